@@ -9,16 +9,25 @@ from typing import TYPE_CHECKING, Self
 if TYPE_CHECKING:
     from atmosbox.scene.statistics import BlockAverage
 
-__all__ = ["AS_STATED", "CHANCE_ALONE", "CHANCE_LIMIT", "ENGINE_IS_OFF", "NO", "YES", "Headline"]
+__all__ = ["AS_STATED", "CHANCE_ALONE", "CHANCE_LIMIT", "ENGINE_IS_OFF", "NO", "ROUNDING", "YES", "Headline"]
 
 CHANCE_ALONE = "none: the model has no other error than chance"
 """Reason of a tolerance of zero."""
 ENGINE_IS_OFF = "the measured error of this engine is that large"
 """Reason of a bias of the engine."""
 CHANCE_LIMIT = 4.0
-"""Largest misfit, in standard errors, that counts as chance: chance exceeds it once in 16,000 times."""
-YES, AS_STATED, NO = "yes", "as stated", "no"
-"""The verdicts on a misfit: explained by chance alone; only with the known error of the model; not explained."""
+"""Largest difference from theory that raises no alarm, in standard errors.
+
+Chance exceeds four standard errors once in 16,000 times if they are known exactly. An error that is read from twenty
+blocks of a run is itself uncertain by a sixth: then chance exceeds four of them once in 1,300 times (Student's t with
+19 degrees of freedom).
+"""
+YES, AS_STATED, NO = "yes", "yes, with the stated model error", "no"
+"""Whether measurement and theory agree: within four standard errors, only with the error of the model, or not."""
+ROUNDING = "a computer rounds at every collision"
+"""Reason of the tolerance of a number that theory says is zero."""
+RESOLVED = 0.1
+"""Largest standard error of a result, as a share of the range in which it must be."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +54,8 @@ class Headline:
         Its name in a table.
     bias, bias_se
         The measured error of runs with this approximate engine, and its standard error [unit].
+    low, high
+        The range in which the value must be, which is also that of the figure's axis [unit]; None if it has none.
 
     Examples
     --------
@@ -59,7 +70,7 @@ class Headline:
     >>> from dataclasses import replace
     >>> sharp = replace(warm, standard_error=0.5, bias=5.0)
     >>> sharp.known, sharp.verdict, replace(sharp, value=283.0).verdict
-    (5.0, 'as stated', 'no')
+    (5.0, 'yes, with the stated model error', 'no')
     """
 
     name: str
@@ -73,6 +84,8 @@ class Headline:
     label: str
     bias: float = 0.0
     bias_se: float = 0.0
+    low: float | None = None
+    high: float | None = None
 
     @classmethod
     def of_mean(
@@ -95,6 +108,23 @@ class Headline:
     def misfit(self) -> float | None:
         """Measurement minus theory [unit]; None without a theory."""
         return None if self.theory is None else self.value - self.theory
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the value is a result: within its range, with a standard error of a tenth of that range at most.
+
+        Examples
+        --------
+        A cloud base of 1013 hPa is below a ground of 1000 hPa:
+
+        >>> from dataclasses import replace
+        >>> base = Headline("cloud_base", 1013e2, 51e2, 888e2, 0.0, "", "Pa", "hPa", "cloud base", low=3e4, high=1e5)
+        >>> base.resolved, replace(base, value=891e2).resolved, replace(base, value=891e2, standard_error=8e3).resolved
+        (False, True, False)
+        """
+        if self.low is None or self.high is None:
+            return True
+        return self.low <= self.value <= self.high and self.standard_error <= RESOLVED * (self.high - self.low)
 
     @property
     def difference_unit(self) -> str:
