@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
+
+from atmosbox.scene.conversion import from_si, slashed
 
 if TYPE_CHECKING:
     from atmosbox.scene.statistics import BlockAverage
@@ -26,6 +29,10 @@ YES, AS_STATED, NO = "yes", "yes, with the stated model error", "no"
 """Whether measurement and theory agree: within four standard errors, only with the error of the model, or not."""
 ROUNDING = "a computer rounds at every collision"
 """Reason of the tolerance of a number that theory says is zero."""
+CHANCE = f"{CHANCE_LIMIT:g} standard errors (chance)"
+"""The part of the expected difference that is chance, in words."""
+IGNORED = 0.05
+"""A known error of the model is not told if it is at most this many standard errors."""
 RESOLVED = 0.1
 """Largest standard error of a result, as a share of the range in which it must be."""
 
@@ -56,10 +63,12 @@ class Headline:
         The measured error of runs with this approximate engine, and its standard error [unit].
     low, high
         The range in which the value must be, which is also that of the figure's axis [unit]; None if it has none.
+    program
+        Another program that computed the value, which then is no measurement; `theory` is atmosbox's own number.
 
     Examples
     --------
-    With an error bar of 2 K, 3 K of misfit may be chance:
+    With an error bar of 2 K, a difference of 3 K is within four standard errors:
 
     >>> warm = Headline("air_temperature", 291.0, 2.0, 288.0, 0.0, "an ideal gas", "K", "degC", "temperature")
     >>> warm.misfit, warm.chance, warm.verdict
@@ -86,6 +95,7 @@ class Headline:
     bias_se: float = 0.0
     low: float | None = None
     high: float | None = None
+    program: str = ""
 
     @classmethod
     def of_mean(
@@ -127,13 +137,23 @@ class Headline:
         return self.low <= self.value <= self.high and self.standard_error <= RESOLVED * (self.high - self.low)
 
     @property
+    def needed(self) -> float:
+        """How many times as many molecules make it a result, if its standard error falls with their square root [1]."""
+        if self.low is None or self.high is None:
+            return 1.0
+        room = [RESOLVED * (self.high - self.low)]
+        if self.theory is not None and self.low < self.theory < self.high:
+            room.append(min(self.theory - self.low, self.high - self.theory) / CHANCE_LIMIT)
+        return max(math.ceil((self.standard_error / min(room)) ** 2), 2)
+
+    @property
     def difference_unit(self) -> str:
         """The unit in which a table shows differences: K for temperatures in degC, and none for a pure number."""
         return {"degC": "K", "1": ""}.get(self.display_unit, self.display_unit)
 
     @property
     def chance(self) -> float:
-        """Largest misfit that chance alone may cause [unit]: four standard errors."""
+        """Four standard errors [unit]; chance exceeds them rarely."""
         return CHANCE_LIMIT * self.standard_error
 
     @property
@@ -147,32 +167,69 @@ class Headline:
 
     @property
     def allowed(self) -> float:
-        """Largest misfit allowed [unit]: by `chance` and by the `known` error together."""
+        """How far the value is expected to be from theory at most [unit]: `chance` and `known` error together."""
         return self._allowed(self.bias, self.bias_se)
 
     def _allowed(self, bias: float, bias_se: float) -> float:
-        """Return the largest misfit allowed for this bias of the engine [unit]."""
+        """Return the largest difference expected with this bias of the engine [unit]."""
         aside = max(math.copysign(1.0, self.misfit or 0.0) * bias, 0.0)
         return CHANCE_LIMIT * math.hypot(self.standard_error, bias_se) + self.tolerance + aside
 
     @property
     def verdict(self) -> str | None:
-        """Whether chance alone explains the misfit, or only with the known error, or neither; None without a theory.
+        """Whether measurement and theory agree; None without a theory, and for what is not a result.
 
         A measurement or an error bar that is not a finite number agrees with nothing.
         """
-        if self.misfit is None:
+        if self.misfit is None or self.program or not self.resolved:
             return None
         if not math.isfinite(self.allowed) or not abs(self.misfit) <= self.allowed:
             return NO
-        return YES if abs(self.misfit) <= self.chance else AS_STATED
+        return YES if abs(self.misfit) <= self.chance or self.reason == ROUNDING else AS_STATED
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the misfit is within what is `allowed`; None without a theory."""
+        """Whether the difference is within what is `allowed`; None if it is not judged, see `verdict`."""
         return None if self.verdict is None else self.verdict != NO
 
     @property
     def excuse(self) -> str:
-        """Why the misfit may exceed chance: the reason of the tolerance, or that the engine is known to be off."""
+        """Why the difference may exceed chance: the reason of the tolerance, or that the engine is known to be off."""
         return self.reason if abs(self.misfit or 0.0) <= self._allowed(0.0, 0.0) else ENGINE_IS_OFF
+
+    def shown(self, size: float, sign: str = "") -> str:
+        """Return a difference [unit] with two digits, in the unit in which a table shows it.
+
+        Examples
+        --------
+        >>> Headline("p", 1e5, 150.0, 1e5, 0.0, "", "Pa", "hPa", "pressure").shown(612.3, "±")
+        '±6.1 hPa'
+        """
+        value = from_si(size, self.display_unit, difference=True)
+        number = re.sub(r"e\+?(-?)0?", r"e\1", f"{float(f'{value:.2g}'):g}")
+        return f"{sign}{number} {slashed(self.difference_unit)}".rstrip()
+
+    @property
+    def tells(self) -> bool:
+        """Whether the `known` error is large enough beside chance to be told."""
+        return bool(self.known > IGNORED * self.standard_error)
+
+    @property
+    def expectation(self) -> str:
+        """How far the value is expected to be from theory at most, in words, with the reason of the model's error.
+
+        Examples
+        --------
+        >>> Headline("t", 291.0, 2.0, 288.0, 0.5, "the box is small", "K", "degC", "temperature").expectation
+        '4 standard errors (chance) plus 0.5 K, because the box is small'
+        """
+        parts = [CHANCE] if self.standard_error > 0.0 else []
+        if not self.tells:
+            return " plus ".join(parts)
+        return f"{' plus '.join([*parts, self.shown(self.known)])}, because {self.model_reason}"
+
+    @property
+    def model_reason(self) -> str:
+        """Where the `known` error comes from: from the model, from the engine, or from both."""
+        engine = ENGINE_IS_OFF if self.bias or self.bias_se else ""
+        return ", and ".join(part for part in (self.reason if self.tolerance else "", engine) if part)

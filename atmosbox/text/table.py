@@ -11,7 +11,9 @@ LONGEST_LINE = 100  # columns of running text, however wide the terminal is
 NARROWEST = 20  # columns for a cell that is broken into lines
 
 
-def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
+def table(
+    header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narrowest: int = NARROWEST
+) -> list[str]:
     r"""Return the lines of a table; no cell is cut off.
 
     Parameters
@@ -21,8 +23,10 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
     rows
         The cells.
     width
-        Largest number of characters in a line. To fit, the last cell of a row and then the first are broken into
-        lines; if that is not enough, each row becomes a block of lines.
+        Largest number of characters in a line. To fit, the names of columns are broken into lines, then the last cell
+        of a row and the first; if that is not enough, each row becomes a block of lines.
+    narrowest
+        Least number of characters of a cell that is broken into lines; no word is broken.
 
     Examples
     --------
@@ -37,11 +41,14 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
     if not lines:
         return []
     sizes = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
-    for column in (-1, 0):
+    cells = [[row[column] for row in rows] for column in range(len(header))]
+    words = [name.split() for name in header]
+    last = len(header) - 1
+    for column, parts in [*((k, cells[k]) for k in range(last, -1, -1)), (last, []), (0, [])]:
         excess = max(sum(sizes) + 2 * len(sizes) - 2 - width, 0)
-        words = [*header[column].split(), *(row[column] for row in rows)]  # names of columns are broken before cells
-        least = min(max(map(len, words), default=0), NARROWEST)
-        sizes[column] = max(sizes[column] - excess, least)
+        longest = max(map(len, [*words[column], *(parts or " ".join(cells[column]).split())]), default=0)
+        least = longest if parts else max(longest, min(max(map(len, cells[column]), default=0), narrowest))
+        sizes[column] = max(sizes[column] - excess, min(least, sizes[column]))
     if sum(sizes) + 2 * len(sizes) - 2 > width:
         return _blocks(header, rows, width)
     made = []
