@@ -316,7 +316,7 @@ def _temperature(dataset: "xr.Dataset", settings: Settings) -> Headline:
     Each molecule that the thermostat touches, M of them in all, gives it on average :math:`c (kT - kT_b)`, with c = 3/2
     for a velocity drawn at random and 2 for a hit on a wall, and the variance of that is 2 c (kT)^2. So the mean of T
     is :math:`T_b + Q / c k M`, with the heat Q that went to the thermostat, and a standard error of
-    :math:`T \sqrt{2 / c M}`. Blocks of one run would make the error too small by half, for a drop holds its heat for long.
+    :math:`T \sqrt{2 / c M}`. Blocks of one run would make the error too small by half: a drop holds its heat for long.
     Without a thermostat no error is known: the temperature depends on the energy of the start.
     """
     scale = _scale(settings)
@@ -357,7 +357,7 @@ def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
         factor = float(law.square_well_compressibility(density, min(warmth, 1e9)))
         # the next coefficient is some times larger than that of hard spheres, and is multiplied by the density cubed
         share = 4.0 * abs(float(law.square_well_third_virial(min(warmth, 1e9)))) * density**3
-        if factor > 0.0 and density <= THIN:
+        if factor > 0.0 and (density <= THIN or not settings.attraction):
             theory = density * factor * scale.reduced_temperature(settings.temperature) * scale.pressure
             left_out = share * theory
     return Headline.of_mean(
@@ -392,14 +392,18 @@ class _Vapour:
         sizes = (largest, np.ones(len(drops))), ((settings.molecules - number - largest) / others, others)
         self.box, dense = math.prod(_sides(settings)[0]), _densities(min(_warmth(settings), 1.2))[0]
         held = [
-            sum(many * 4.0 / 3.0 * np.pi * (np.cbrt(0.75 * size / (np.pi * dense)) * (size > 0.0) + out * (size > 0.0)) ** 3
-                for size, many in sizes)
+            sum(
+                many * (size > 0.0) * 4.0 / 3.0 * np.pi * (np.cbrt(0.75 * size / (np.pi * dense)) + out) ** 3
+                for size, many in sizes
+            )
             for out in (0.0, 0.5 * RANGE, RANGE)
-        ]  # fmt: skip
+        ]
         self.density = [number / np.maximum(self.box - each, 0.1 * self.box) for each in held]
         # the variance of the number of molecules of a gas that may leave it, from its compressibility
         density, depth = float(self.density[1][-1]), max(settings.attraction, 1e-9)
-        second, third = (float(law.square_well_compressibility(step, self.kT.mean() / depth)) for step in (1e-6, density))
+        second, third = (
+            float(law.square_well_compressibility(step, self.kT.mean() / depth)) for step in (1e-6, density)
+        )
         stiff = 1.0 + 2.0 * (second - 1.0) * 1e6 * density
         stiff += 3.0 * (third - 1.0 - (second - 1.0) * 1e6 * density)
         self.error = math.sqrt(float(number[-1]) / stiff) if stiff > 0.0 else 0.0

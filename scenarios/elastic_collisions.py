@@ -152,8 +152,16 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     found = [
         Headline(name, float(largest), 0.0, 0.0, 1e-12, ROUNDING, "1", "1", label)
         for name, largest, label in (
-            ("largest_energy_change", np.abs(dataset.energy_change.values).max(), "largest change of the energy, over the energy"),
-            ("largest_momentum_residual", dataset.momentum_residual.values.max(), "largest momentum unaccounted for, over all momentum"),
+            (
+                "largest_energy_change",
+                np.abs(dataset.energy_change.values).max(),
+                "largest change of the energy, over the energy",
+            ),
+            (
+                "largest_momentum_residual",
+                dataset.momentum_residual.values.max(),
+                "largest momentum unaccounted for, over all momentum",
+            ),
         )
     ]
     if late.sizes["elapsed_time"] >= 40 and settings.mass_ratio > 1.0:

@@ -72,13 +72,13 @@ STEPS = (
     ),
     Step(
         "A cloud",
-        "The same with 3000 molecules of moist air: below the cloud base they cool as dry air does, above it more "
+        "The same with 12000 molecules of moist air: below the cloud base they cool as dry air does, above it more "
         "slowly.",
-        ("run lifting-moist --set molecules=3000 --set ascent=150 -o cloud.nc", "plot cloud.nc"),
+        ("run lifting-moist --set molecules=12000 --set ascent=150 -o cloud.nc", "plot cloud.nc"),
     ),
     Step(
         "Can it be trusted?",
-        "The energy ledger must close, no molecule may be lost, and what is reported must agree with theory.",
+        "The energy budget must be closed, no molecule may be lost, and what is reported must agree with theory.",
         ("check lift.nc",),
     ),
     Step(

@@ -131,7 +131,10 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
     called = str(read(dataset, f"{name}_theory").attrs.get("display_name", "theory"))
     apart, most = (
         float(convert(size, unit, of_difference(shown), name=name, difference=True))
-        for size in (value - theory, sum(attrs.get(f"misfit_allowed_{part}", 0.0) for part in ("by_chance", "as_known")))
+        for size in (
+            value - theory,
+            sum(attrs.get(f"misfit_allowed_{part}", 0.0) for part in ("by_chance", "as_known")),
+        )
     )
     away = _known(apart, error, _symbol(of_difference(shown)), signed=True)
     if most > 0.0:

@@ -232,7 +232,7 @@ def _about(first: runner.Prepared, answers: bool) -> str:
 
 
 def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
-    """Return the line of a run for a quantity: letter, measurement, theory, difference over error; or to be filled in."""
+    """Return the line of a run for a quantity: letter, measurement, theory, difference over error; empty to fill in."""
     if not answers:
         return run.letter, "±", "", ""
     if name not in run.headlines or not run.headlines[name].resolved:
@@ -254,5 +254,6 @@ def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
                 allowed = f"{known} {spelled(each.difference_unit)}".rstrip()
                 excuses.setdefault(each.excuse, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
     return [
-        f"More than four standard errors: {'; '.join(numbers)}, because {reason}." for reason, numbers in excuses.items()
+        f"More than four standard errors: {'; '.join(numbers)}, because {reason}."
+        for reason, numbers in excuses.items()
     ]

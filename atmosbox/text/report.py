@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from atmosbox.simulation.runner import Card, Outcome
 
 
-
 def next_command(command: str, path: Path) -> str:
     """Return a command to type next, with the path of a file.
 

@@ -11,9 +11,7 @@ LONGEST_LINE = 100  # columns of running text, however wide the terminal is
 NARROWEST = 20  # columns for a cell that is broken into lines
 
 
-def table(
-    header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narrowest: int = NARROWEST
-) -> list[str]:
+def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narrowest: int = NARROWEST) -> list[str]:
     r"""Return the lines of a table; no cell is cut off.
 
     Parameters

@@ -104,9 +104,7 @@ def convection_headlines(
             "they cross"
         )
         low, high = (ascent.top_pressure, ascent.pressure) if unit == "Pa" else (None, None)
-        found.append(
-            Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label, low=low, high=high)
-        )
+        found.append(Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label, low=low, high=high))
     return tuple(found)
 
 
