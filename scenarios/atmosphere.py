@@ -592,7 +592,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     steep = (column.scale_height_of(mean + 1e-4) - column.scale_height_of(mean)) / 1e-4
     return (
         Headline(
-            "surface_pressure",
+            "mean_surface_pressure",
             float(force[:, 4].mean()),
             math.hypot(weight_headline.standard_error, float(above.standard_error)),
             expected + ceiling,
@@ -683,7 +683,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         against_height(
             "Pressure falls with height", "layer_pressure", smooth, (light,), "pressure", "hPa", "log",
-            "weight_of_the_air" if stirs else "surface_pressure",
+            "weight_of_the_air" if stirs else "mean_surface_pressure",
         ),
         against_height(title, "layer_temperature", curve, others, "temperature", "degC", "linear", number),
     )  # fmt: skip

@@ -516,7 +516,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     )
     energies = over_time(
         "What the wells give becomes motion" if settings.bath == "none" else "What the wells give, the bath takes",
-        {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"},
+        {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"}
+        | ({"heat_from_bath": "from the thermostat"} if settings.bath == "random" else {}),
         "energy",
         "zJ",
     )
@@ -526,7 +527,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "temperature",
         "K",
         theory="bath" if settings.bath != "none" else "",
-        headline="mean_temperature" if settings.start == "slab" and settings.bath != "none" else "",
+        headline="mean_temperature",
     )
     if settings.start in ("slab", "pool"):
         profile = Panel(
@@ -556,5 +557,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "bar",
         theory="" if settings.air else "free vapour: gas law with B2 and B3",
         parts=50,
+        headline="mean_virial_pressure",
     )
     return (grown, energies, warm, pressure)

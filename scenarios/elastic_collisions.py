@@ -155,12 +155,12 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             (
                 "largest_energy_change",
                 np.abs(dataset.energy_change.values).max(),
-                "largest change of the energy, over the energy",
+                "largest relative change of the energy",
             ),
             (
                 "largest_momentum_residual",
                 dataset.momentum_residual.values.max(),
-                "largest momentum unaccounted for, over all momentum",
+                "largest relative error of the momentum",
             ),
         )
     ]

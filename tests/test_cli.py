@@ -521,7 +521,7 @@ def test_a_ledger_that_does_not_close_ends_with_3_and_keeps_the_file(folder, mon
     monkeypatch.setattr(runner, "execute", lambda *a, **k: execute(*a, **k)._replace(ledger=1e-3))
     result = atmosbox_in_process(*SHORT)
     assert result.exit_code == 3
-    assert "energy ledger does not close" in result.stdout
+    assert "energy budget: not closed" in result.stdout
     assert f"atmosbox check {SCENE}.nc" in result.stderr
     assert Path(f"{SCENE}.nc").exists()
 
@@ -770,7 +770,7 @@ def test_no_value_of_a_result_is_cut_at_any_width():
             report.headline_lines([wide, a_headline(value=-1e9, error=3e7, unit="s-1", display="s-1")], width)
         )
         words = " ".join(text.split())
-        for value in ("14.999 ± 0.031", "14.850", "+0.149 (4.8σ)", "no", "(-1.000 ± 0.030)e9", "0.000e9"):
+        for value in ("14.999 ± 0.031", "14.850", "+0.149 K", "no", "(-1.000 ± 0.030)e9", "0.000e9"):
             assert value in words
         assert "…" not in text
 
@@ -804,7 +804,7 @@ def test_the_verdict_is_that_of_the_headline():
 
 def test_a_difference_that_only_the_model_explains_is_explained():
     lines = report.headline_lines([a_headline(error=0.01, tolerance=0.5)], 200)
-    assert lines[1].endswith("±0.54 K           yes, with the stated model error")
+    assert lines[1].endswith("±0.54 K          yes, with the stated model error")
     assert lines[-1] == "expected within: 4 standard errors (chance) plus 0.5 K, because the box is small."
 
 

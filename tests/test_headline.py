@@ -86,7 +86,7 @@ def test_no_table_at_eighty_columns_falls_into_blocks_and_no_cell_is_a_dash():
 
 
 def test_rounding_of_what_is_conserved_agrees_without_an_excuse():
-    kept = Headline("e", 2e-15, 0.0, 0.0, 1e-12, ROUNDING, "1", "1", "largest change of the energy, over the energy")
+    kept = Headline("e", 2e-15, 0.0, 0.0, 1e-12, ROUNDING, "1", "1", "largest relative change of the energy")
     assert (kept.verdict, replace(kept, value=2e-12).verdict) == ("yes", "no")
     assert headline_lines([kept], 80)[-1] == "expected within: 1e-12, because a computer rounds at every collision."
 
