@@ -39,14 +39,18 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narr
     if not lines:
         return []
     sizes = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
-    cells = [[row[column] for row in rows] for column in range(len(header))]
-    words = [name.split() for name in header]
-    last = len(header) - 1
-    for column, parts in [*((k, cells[k]) for k in range(last, -1, -1)), (last, []), (0, [])]:
+    columns = list(zip(*rows, strict=True)) or [()] * len(header)
+    words = [max(map(len, name.split()), default=0) for name in header]
+
+    def shrink(column: int, least: int) -> None:
         excess = max(sum(sizes) + 2 * len(sizes) - 2 - width, 0)
-        longest = max(map(len, [*words[column], *(parts or " ".join(cells[column]).split())]), default=0)
-        least = longest if parts else max(longest, min(max(map(len, cells[column]), default=0), narrowest))
         sizes[column] = max(sizes[column] - excess, min(least, sizes[column]))
+
+    for column in reversed(range(len(sizes))):
+        shrink(column, max([words[column], *map(len, columns[column])]))
+    for column in (-1, 0):
+        longest = max(map(len, " ".join(columns[column]).split()), default=0)
+        shrink(column, max([words[column], longest, min(max(map(len, columns[column]), default=0), narrowest)]))
     if sum(sizes) + 2 * len(sizes) - 2 > width:
         return _blocks(header, rows, width)
     made = []

@@ -29,6 +29,18 @@ def test_a_drop_grows_that_nobody_put_in_and_none_without_attraction():
     assert outcome.ledger < 1e-12
 
 
+def test_a_drop_and_a_gas_state_their_temperature_and_pressure_beside_theory():
+    for settings in ({"duration": "0.8 ns"}, {"duration": "0.2 ns", **HARD}):
+        _, found, _ = run(molecules=400, **settings)
+        counts = ["last_largest_drop_molecule_count", "last_vapor_molecule_count"]
+        assert list(found) == [*counts, "mean_temperature", "mean_virial_pressure"]
+        assert found["last_vapor_molecule_count"].standard_error > 0.0
+        for name in ("mean_temperature", "mean_virial_pressure"):
+            assert found[name].agrees
+            assert 0.0 < found[name].standard_error < 0.1 * found[name].value
+            assert found[name].tolerance < 0.15 * found[name].theory
+
+
 def test_without_a_bath_motion_gains_what_attraction_loses():
     data, *_ = run(molecules=300, duration="0.2 ns", bath="none")
     lost = data.attraction_energy[0] - data.attraction_energy
