@@ -340,7 +340,7 @@ def _temperature(dataset: "xr.Dataset", settings: Settings) -> Headline:
         settings.temperature,
         "K",
         tolerance=heat / (each * touched),
-        reason="the heat of condensation still flows to the thermostat",
+        reason="heat still flows to the thermostat",
     )
 
 
@@ -408,8 +408,9 @@ class _Vapour:
         stiff += 3.0 * (third - 1.0 - (second - 1.0) * 1e6 * density)
         self.error = math.sqrt(float(number[-1]) / stiff) if stiff > 0.0 else 0.0
         self.error_of_drop = self.error if drops[-1] == 1.0 else 0.0
-        if self.alone:
-            self.error, self.error_of_drop = float(number.std(ddof=1)), float(largest.std(ddof=1))
+        if self.alone:  # where clusters are rare, their number in one frame has no error bar
+            often = largest.mean() > 1.0
+            self.error, self.error_of_drop = (float(each.std(ddof=1)) * often for each in (number, largest))
 
     def pressure(self) -> Headline:
         """Return the mean pressure, beside that of a gas as dense as the free vapour."""

@@ -39,7 +39,7 @@ def ideal(monkeypatch):
 def test_a_plane_column_stands_presses_and_warms_as_hydrostatics_of_discs_say(floor, start):
     outcome = run(plane=True, molecules=300, knudsen=0.1, duration=2000.0, floor=floor, start=start)
     assert outcome.ledger < 1e-12
-    assert len(outcome.headlines) == 3
+    assert len(outcome.headlines) == 5
     for each in outcome.headlines:
         assert abs(each.value - each.theory) <= 4.0 * each.standard_error + each.tolerance, each.name
     found = outcome.dataset
