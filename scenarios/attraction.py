@@ -53,7 +53,7 @@ from atmosbox.scene.engines import EXACT
 from atmosbox.scene.knob import Knob
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
-from atmosbox.scene.statistics import BlockAverage, average_beside
+from atmosbox.scene.statistics import BlockAverage, overlapping_average
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 if TYPE_CHECKING:
@@ -347,11 +347,12 @@ def _temperature(dataset: "xr.Dataset", settings: Settings) -> Headline:
 def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
     """Return the pressure of molecules that stay a gas, beside that by B2 and B3 where these are enough."""
     density, warmth, scale = settings.density * law.WELL_CRITICAL_DENSITY, _warmth(settings), _scale(settings)
-    late = dataset.isel(elapsed_time=slice(SETTLE, None))
-    rate = RATE if settings.start == "vapour" else FAST_RATE
-    frame = float(late.elapsed_time[1] - late.elapsed_time[0]) * 1e-9 / scale.time
-    # the pressure follows the temperature, which the thermostat changes in the time 1/rate
-    mean = average_beside(late.virial_pressure.values, late.air_temperature.values, 1.0 / (rate * frame), BLOCKS)
+    pressure, kelvin = (dataset[name].values[SETTLE:] for name in ("virial_pressure", "air_temperature"))
+    # the pressure follows the temperature, whose error is known, and has fast noise of its own
+    warmer = kelvin - kelvin.mean()
+    slope = float(warmer @ pressure) / float(warmer @ warmer)
+    quick = overlapping_average(pressure - slope * warmer, BLOCKS)
+    error = np.hypot(slope * _temperature(dataset, settings).standard_error, quick.standard_error)
     theory, left_out = None, 0.0
     if settings.bath == "random" and not settings.air:
         factor = float(law.square_well_compressibility(density, min(warmth, 1e9)))
@@ -363,7 +364,7 @@ def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
     return Headline.of_mean(
         "mean_virial_pressure",
         "pressure",
-        mean,
+        BlockAverage(quick.mean, error),
         theory,
         "Pa",
         "bar",
