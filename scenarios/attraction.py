@@ -410,7 +410,7 @@ class _Vapour:
         self.error = math.sqrt(float(number[-1]) / stiff) if stiff > 0.0 else 0.0
         self.error_of_drop = self.error if drops[-1] == 1.0 else 0.0
         if self.alone:  # where clusters are rare, their number in one frame has no error bar
-            often = largest.mean() > 1.0
+            often = bool(largest.mean() > 1.0)
             self.error, self.error_of_drop = (float(each.std(ddof=1)) * often for each in (number, largest))
 
     def pressure(self) -> Headline:

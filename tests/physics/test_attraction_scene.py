@@ -34,7 +34,8 @@ def test_a_drop_and_a_gas_state_their_temperature_and_pressure_beside_theory():
         _, found, _ = run(molecules=400, **settings)
         counts = ["last_largest_drop_molecule_count", "last_vapor_molecule_count"]
         assert list(found) == [*counts, "mean_temperature", "mean_virial_pressure"]
-        assert found["last_vapor_molecule_count"].standard_error > 0.0
+        # clusters in the gas are rare: their number has no error bar
+        assert (found["last_vapor_molecule_count"].standard_error > 0.0) == (settings.get("attraction") != 0.0)
         for name in ("mean_temperature", "mean_virial_pressure"):
             assert found[name].agrees
             assert 0.0 < found[name].standard_error < 0.1 * found[name].value
