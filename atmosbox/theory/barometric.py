@@ -133,7 +133,7 @@ def column_scale_height(mean_height: float, depth: float) -> float:
     --------
     >>> mean = float(column_mean_height(25.0, 8.4, 1.0, 1.0))
     >>> round(mean, 3), round(column_scale_height(mean, 25.0), 9)
-    (7.055, 8.4)
+    (7.057, 8.4)
     """
     from scipy.optimize import brentq  # loads slowly
 
