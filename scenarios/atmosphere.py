@@ -331,6 +331,23 @@ class Column:
         column = self.per_area, self.bottom, self.top, kT, 1.0, 1.0, self.room
         return law.hydrostatic_mean_height(*column, dimensions=self.dimensions)
 
+    def scale_height_of(self, mean: float) -> float:
+        """Return the scale height of the closed column of points whose centres have this mean height [scale height]."""
+        return law.column_scale_height(mean - self.bottom, self.top - self.bottom)
+
+    def on_the_floor(self, kT: float) -> float:
+        r"""Return the share of the molecules by which the layer on the floor holds more than locally uniform gas [1].
+
+        A molecule at a wall has neighbours on one side only, which push it to the wall. Each area holds
+        :math:`(9 / \pi) \phi^2 / (1 + 2 \phi) \sigma^2` spheres more at the packing fraction :math:`\phi`, by scaled
+        particle theory; each length :math:`(2 / 3) n^2 \sigma^3` discs, to first order in their density n.
+        """
+        n = float(self.density(np.array([self.bottom, self.bottom + 1e-3]), kT, self.room)[0])
+        if self.dimensions == 2:
+            return 2.0 / 3.0 * n**2 * self.room**3 / self.per_area
+        packing = math.pi / 6.0 * n * self.room**3
+        return 0.25 * math.pi * n**2 * self.room**4 / (1.0 + 2.0 * packing) / self.per_area
+
     def pressure(self, density: np.ndarray, kT: float) -> np.ndarray:
         """Return the pressure of a gas of the column's molecules [kT/scale height^3]."""
         pressure = law.gas_pressure_discs if self.dimensions == 2 else law.gas_pressure
@@ -531,7 +548,7 @@ def _energy(late: "xr.Dataset") -> np.ndarray:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the weight of the air, and its temperature and mean height, or its lapse rate if it is stirred."""
+    """Return pressure, temperature and scale height of the air, or its weight and lapse rate if it is stirred."""
     column = Column(settings, used(dataset))
     settled = _settled(column, settings)
     late = dataset.isel(elapsed_time=slice(settled, None))
@@ -553,17 +570,40 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         CHANCE_ALONE,
         "Pa",
         "hPa",
-        "weight of the air, floor minus ceiling",
+        "surface pressure minus pressure at the top",
     )
     if settings.stirring:
         return weight_headline, _lapse_rate(late, column, settings)
     energy = _energy(late)
     memory = column.memory * FRAMES / settings.duration
     temperature = average_beside(late.air_temperature.values, energy, memory)
-    height = column.mean_height(kT) * column.scale.length
+    # the floor carries the weight and what presses on the ceiling
+    above = average_beside(force[:, 5], energy, memory)
+    thin = column.density(np.array([column.top - 1e-3, column.top]), kT, column.room)
+    ceiling = float(column.pressure(thin, kT)[0]) * column.scale.pressure
+    fallen = column.on_the_floor(kT)
+    length, mean = column.scale.length, column.mean_height(kT)
+    mean, ceiling = mean - fallen * (mean - column.bottom), ceiling * (1.0 - fallen)
     per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
-    climbed = average_beside(late.potential_energy.values / per_metre, energy, memory)
+    climbed = average_beside(late.potential_energy.values / per_metre / length, energy, memory)
+    high, error = float(climbed.mean), float(climbed.standard_error)
+    found, near = column.scale_height_of(high), column.scale_height_of(high + 1e-4)
+    # the layer on the floor is as thick as a molecule, in which gravity changes it a little
+    unknown = fallen * column.room
+    reason = "hard molecules crowd on the floor"
+    steep = (column.scale_height_of(mean + 1e-4) - column.scale_height_of(mean)) / 1e-4
     return (
+        Headline(
+            "mean_surface_pressure",
+            float(force[:, 4].mean()),
+            math.hypot(weight_headline.standard_error, float(above.standard_error)),
+            expected + ceiling,
+            unknown * ceiling,
+            reason,
+            "Pa",
+            "hPa",
+            "surface pressure",
+        ),
         weight_headline,
         Headline.of_mean(
             "mean_temperature",
@@ -571,18 +611,31 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             temperature,
             kT * column.scale.temperature,
             "K",
+            "degC",
             tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
             reason="a finite number of molecules",
         ),
-        Headline.of_mean(
-            "mean_height",
-            "mean height of the molecules",
-            climbed,
-            height,
+        Headline(
+            "scale_height",
+            found * length,
+            (near - found) / 1e-4 * error * length,
+            column.scale_height_of(mean) * length,
+            steep * unknown * mean * length,
+            reason,
             "m",
             "km",
-            tolerance=0.001 * height,
-            reason="the theory takes the gas to be locally uniform",
+            "scale height",
+        ),
+        Headline(
+            "mean_height",
+            high * length,
+            error * length,
+            mean * length,
+            unknown * mean * length,
+            reason,
+            "m",
+            "km",
+            "mean height of the molecules",
         ),
     )
 
@@ -628,11 +681,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     return (
         against_height(
             "Density falls with height", "number_density", smooth, (thin,), "number density", "", "log",
-            "weight_of_the_air" if stirs else "mean_height",
+            "weight_of_the_air" if stirs else "scale_height",
         ),
         against_height(
             "Pressure falls with height", "layer_pressure", smooth, (light,), "pressure", "hPa", "log",
-            "weight_of_the_air",
+            "weight_of_the_air" if stirs else "mean_surface_pressure",
         ),
-        against_height(title, "layer_temperature", curve, others, "temperature", "K", "linear", number),
+        against_height(title, "layer_temperature", curve, others, "temperature", "degC", "linear", number),
     )  # fmt: skip

@@ -53,6 +53,7 @@ from atmosbox.scene.engines import EXACT
 from atmosbox.scene.knob import Knob
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
+from atmosbox.scene.statistics import BlockAverage, overlapping_average
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 if TYPE_CHECKING:
@@ -289,45 +290,150 @@ def _units_of_slab(scale: Scale) -> dict[str, float]:
     }
 
 
-def _gas_pressure(settings: Settings) -> float:
-    """Return the pressure that the molecules have if they stay a gas, with B2 and B3 [Pa]."""
-    density = settings.density * law.WELL_CRITICAL_DENSITY
-    scale = _scale(settings)
-    factor = float(law.square_well_compressibility(density, min(_warmth(settings), 1e9)))
-    return density * factor * scale.reduced_temperature(settings.temperature) * scale.pressure
-
-
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the size of the drop and the vapour, the pressure of a gas, or the properties of a slab and its vapour."""
+    """Return the drop, the vapour, temperature and pressure, or the properties of a slab and its vapour."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
     if settings.start == "slab" and all(
         name in late and np.isfinite(late[name].values).mean() > 0.5 for name in _units_of_slab(_scale(settings))
     ):
-        return _of_slab(late, settings)
+        return *_of_slab(late, settings), _temperature(dataset, settings)
+    vapour = _Vapour(dataset, settings)
     found = []
-    for name, label in (
-        ("largest_drop_molecule_count", "molecules in the largest drop"),
-        ("vapor_molecule_count", "molecules of the vapour"),
+    for name, label, error in (
+        ("largest_drop_molecule_count", "molecules in the largest drop", vapour.error_of_drop),
+        ("vapor_molecule_count", "molecules of the vapour", vapour.error),
     ):
-        found.append(Headline(f"last_{name}", float(dataset[name][-1]), 0.0, None, 0.0, "", "1", "1", label))
-    gas = float(dataset.largest_drop_molecule_count.max()) < 10 + 0.02 * settings.molecules
-    thin = settings.density * law.WELL_CRITICAL_DENSITY <= THIN and _gas_pressure(settings) > 0.0
-    if gas and thin and settings.bath != "none" and not settings.air and settings.start == "vapour":
-        mean = block_average(late.virial_pressure.values, BLOCKS)
-        theory = _gas_pressure(settings)
-        # the next coefficient is some times larger than that of hard spheres, and is multiplied by the density cubed
-        density = settings.density * law.WELL_CRITICAL_DENSITY
-        third = float(law.square_well_third_virial(min(_warmth(settings), 1e9)))
-        left_out = 4.0 * abs(third) * density**3 * theory
-        reason = "further virial coefficients are left out"
-        found.append(
-            Headline.of_mean(
-                "mean_virial_pressure", "pressure", mean, theory, "Pa", "bar", tolerance=left_out, reason=reason
-            )
-        )
+        found.append(Headline(f"last_{name}", float(dataset[name][-1]), error, None, 0.0, "", "1", "1", label))
+    found.append(_temperature(dataset, settings))
+    if settings.start != "pool":
+        found.append(_gas_pressure(dataset, settings) if vapour.alone else vapour.pressure())
     return tuple(found)
+
+
+def _temperature(dataset: "xr.Dataset", settings: Settings) -> Headline:
+    r"""Return the mean temperature after the settling, beside that of the thermostat.
+
+    Each molecule that the thermostat touches, M of them in all, gives it on average :math:`c (kT - kT_b)`, with c = 3/2
+    for a velocity drawn at random and 2 for a hit on a wall, and the variance of that is 2 c (kT)^2. So the mean of T
+    is :math:`T_b + Q / c k M`, with the heat Q that went to the thermostat, and a standard error of
+    :math:`T \sqrt{2 / c M}`. Blocks of one run would make the error too small by half: a drop holds its heat for long.
+    Without a thermostat no error is known: the temperature depends on the energy of the start.
+    """
+    scale = _scale(settings)
+    time, kelvin = dataset.elapsed_time.values, float(dataset.air_temperature.values[SETTLE:].mean())
+    if settings.bath == "none":
+        return Headline("mean_temperature", kelvin, 0.0, None, 0.0, "", "K", "K", "temperature")
+    _, air = _sides(settings)
+    if settings.bath == "random":
+        rate = RATE if settings.start == "vapour" else FAST_RATE
+        each, touched = 1.5, (settings.molecules + air) * rate * (time[-1] - time[SETTLE - 1]) * 1e-9 / scale.time
+        gained = dataset.heat_from_bath.values
+    else:
+        each, touched = 2.0, float(dataset.wall_hit_count[-1] - dataset.wall_hit_count[SETTLE - 1])
+        gained = dataset.heat_from_wall.values.sum(axis=1)
+    heat = abs(float(gained[-1] - gained[SETTLE - 1])) / BOLTZMANN
+    touched = max(touched, 1.0)
+    return Headline.of_mean(
+        "mean_temperature",
+        "temperature",
+        BlockAverage(np.asarray(kelvin), np.asarray(settings.temperature * math.sqrt(2.0 / (each * touched)))),
+        settings.temperature,
+        "K",
+        tolerance=heat / (each * touched),
+        reason="heat still flows to the thermostat",
+    )
+
+
+def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
+    """Return the pressure of molecules that stay a gas, beside that by B2 and B3 where these are enough."""
+    density, warmth, scale = settings.density * law.WELL_CRITICAL_DENSITY, _warmth(settings), _scale(settings)
+    pressure, kelvin = (dataset[name].values[SETTLE:] for name in ("virial_pressure", "air_temperature"))
+    # the pressure follows the temperature, whose error is known, and has fast noise of its own
+    warmer = kelvin - kelvin.mean()
+    slope = float(warmer @ pressure) / float(warmer @ warmer)
+    quick = overlapping_average(pressure - slope * warmer, BLOCKS)
+    error = np.hypot(slope * _temperature(dataset, settings).standard_error, quick.standard_error)
+    theory, left_out = None, 0.0
+    if settings.bath == "random" and not settings.air:
+        factor = float(law.square_well_compressibility(density, min(warmth, 1e9)))
+        # the next coefficient is some times larger than that of hard spheres, and is multiplied by the density cubed
+        share = 4.0 * abs(float(law.square_well_third_virial(min(warmth, 1e9)))) * density**3
+        if factor > 0.0 and (density <= THIN or not settings.attraction):
+            theory = density * factor * scale.reduced_temperature(settings.temperature) * scale.pressure
+            left_out = share * theory
+    return Headline.of_mean(
+        "mean_virial_pressure",
+        "pressure",
+        BlockAverage(quick.mean, error),
+        theory,
+        "Pa",
+        "bar",
+        tolerance=left_out,
+        reason="further virial coefficients are left out",
+    )
+
+
+class _Vapour:
+    r"""The free vapour around drops: its pressure by B2 and B3, and how much its number fluctuates.
+
+    The surface of a drop is not sharp. The vapour may fill the box up to where a drop as dense as the liquid would end,
+    or up to a range of the wells farther out, where a molecule counts as part of the drop: theory takes the middle, and
+    half the difference is how far it may be off.
+    """
+
+    def __init__(self, dataset: "xr.Dataset", settings: Settings) -> None:
+        self.settings, self.scale = settings, _scale(settings)
+        half = dataset.isel(elapsed_time=slice(dataset.sizes["elapsed_time"] // 2, None))
+        self.measured = half.virial_pressure.values
+        self.kT = half.air_temperature.values / self.scale.temperature
+        number, largest = half.vapor_molecule_count.values, half.largest_drop_molecule_count.values
+        drops = half.drop_count.values
+        self.alone = largest.mean() < 0.1 * settings.molecules
+        others = np.maximum(drops - 1.0, 1.0)
+        sizes = (largest, np.ones(len(drops))), ((settings.molecules - number - largest) / others, others)
+        self.box, dense = math.prod(_sides(settings)[0]), _densities(min(_warmth(settings), 1.2))[0]
+        held = [
+            sum(
+                many * (size > 0.0) * 4.0 / 3.0 * np.pi * (np.cbrt(0.75 * size / (np.pi * dense)) + out) ** 3
+                for size, many in sizes
+            )
+            for out in (0.0, 0.5 * RANGE, RANGE)
+        ]
+        self.density = [number / np.maximum(self.box - each, 0.1 * self.box) for each in held]
+        # the variance of the number of molecules of a gas that may leave it, from its compressibility
+        density, depth = float(self.density[1][-1]), max(settings.attraction, 1e-9)
+        second, third = (
+            float(law.square_well_compressibility(step, self.kT.mean() / depth)) for step in (1e-6, density)
+        )
+        stiff = 1.0 + 2.0 * (second - 1.0) * 1e6 * density
+        stiff += 3.0 * (third - 1.0 - (second - 1.0) * 1e6 * density)
+        self.error = math.sqrt(float(number[-1]) / stiff) if stiff > 0.0 else 0.0
+        self.error_of_drop = self.error if drops[-1] == 1.0 else 0.0
+        if self.alone:  # where clusters are rare, their number in one frame has no error bar
+            often = bool(largest.mean() > 1.0)
+            self.error, self.error_of_drop = (float(each.std(ddof=1)) * often for each in (number, largest))
+
+    def pressure(self) -> Headline:
+        """Return the mean pressure, beside that of a gas as dense as the free vapour."""
+        depth = max(self.settings.attraction, 1e-9)
+        low, theory, high = (
+            each * self.kT * law.square_well_compressibility(each, self.kT / depth) * self.scale.pressure
+            for each in self.density
+        )
+        apart = block_average(self.measured - theory, BLOCKS // 2)
+        known = None if self.settings.air or not (np.asarray(theory) > 0.0).all() else float(np.mean(theory))
+        return Headline.of_mean(
+            "mean_virial_pressure",
+            "pressure of the vapour",
+            BlockAverage(np.asarray(self.measured.mean()), apart.standard_error),
+            known,
+            "Pa",
+            "bar",
+            tolerance=0.0 if known is None else 0.5 * abs(float(np.mean(high - low))),
+            reason="the surface of a drop is not sharp",
+        )
 
 
 def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
@@ -401,9 +507,6 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     for name, (value, error), answer, allowed, reason, unit, si, shown, label in rows:
         expected = None if answer is None else answer * unit
         found.append(Headline(name, value * unit, error * unit, expected, allowed * unit, reason, si, shown, label))
-    if settings.bath != "none":
-        temperature = block_average(late.air_temperature.values, BLOCKS)
-        found.append(Headline.of_mean("mean_temperature", "temperature", temperature, settings.temperature, "K"))
     return tuple(found)
 
 
@@ -417,7 +520,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     )
     energies = over_time(
         "What the wells give becomes motion" if settings.bath == "none" else "What the wells give, the bath takes",
-        {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"},
+        {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"}
+        | ({"heat_from_bath": "from the thermostat"} if settings.bath == "random" else {}),
         "energy",
         "zJ",
     )
@@ -427,7 +531,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "temperature",
         "K",
         theory="bath" if settings.bath != "none" else "",
-        headline="mean_temperature" if settings.start == "slab" and settings.bath != "none" else "",
+        headline="mean_temperature",
     )
     if settings.start in ("slab", "pool"):
         profile = Panel(
@@ -457,5 +561,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "bar",
         theory="" if settings.air else "free vapour: gas law with B2 and B3",
         parts=50,
+        headline="mean_virial_pressure",
     )
     return (grown, energies, warm, pressure)

@@ -31,6 +31,7 @@ from atmosbox.scene import (
     setting,
 )
 from atmosbox.scene.engines import EXACT
+from atmosbox.scene.headline import ROUNDING
 from atmosbox.scene.knob import warmed_walls
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
@@ -151,10 +152,18 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     """Return the ratio of mean energies, and the largest errors of energy and momentum."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     found = [
-        Headline(name, float(largest), 0.0, 0.0, 1e-12, "a computer rounds at every collision", "1", "1", label)
+        Headline(name, float(largest), 0.0, 0.0, 1e-12, ROUNDING, "1", "1", label)
         for name, largest, label in (
-            ("largest_energy_change", np.abs(dataset.energy_change.values).max(), "largest change of the energy"),
-            ("largest_momentum_residual", dataset.momentum_residual.values.max(), "largest momentum unaccounted for"),
+            (
+                "largest_energy_change",
+                np.abs(dataset.energy_change.values).max(),
+                "largest relative change of the energy",
+            ),
+            (
+                "largest_momentum_residual",
+                dataset.momentum_residual.values.max(),
+                "largest relative error of the momentum",
+            ),
         )
     ]
     if late.sizes["elapsed_time"] >= 40 and settings.mass_ratio > 1.0:

@@ -207,20 +207,12 @@ def _metpy(settings: Settings) -> tuple[Headline, ...]:
     ours = law.cape_cin(levels, _around(settings, levels)[2], parcel, base)
     reason = "MetPy leaves out the heat of the vapour, and its EL is one of temperatures, not of virtual ones"
     rows = [
-        ("metpy_lcl", metpy.lcl.pressure, base, 200.0, "Pa", "hPa", "condensation level, MetPy"),
-        (
-            "metpy_cape",
-            metpy.cape,
-            ours.cape,
-            0.05 * ours.cape,
-            "J kg-1",
-            "J kg-1",
-            "CAPE of the pseudo-adiabat, MetPy",
-        ),
+        ("metpy_lcl", metpy.lcl.pressure, base, "Pa", "hPa", "condensation level"),
+        ("metpy_cape", metpy.cape, ours.cape, "J kg-1", "J kg-1", "CAPE of the pseudo-adiabat"),
     ]
     if metpy.el is not None and ours.el is not None:
-        rows.append(("metpy_el", metpy.el.pressure, ours.el, 1000.0, "Pa", "hPa", "equilibrium level, MetPy"))
-    return tuple(Headline(n, v, 0.0, t, allowed, reason, u, s, label) for n, v, t, allowed, u, s, label in rows)
+        rows.append(("metpy_el", metpy.el.pressure, ours.el, "Pa", "hPa", "equilibrium level"))
+    return tuple(Headline(n, v, 0.0, t, 0.0, reason, u, s, label, program="MetPy") for n, v, t, u, s, label in rows)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

@@ -26,7 +26,7 @@ from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
 from atmosbox.scene import engines
-from atmosbox.scene.headline import ENGINE_IS_OFF, Headline
+from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF, Headline
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
@@ -291,9 +291,9 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
     temperature = told["errors"]["mean_temperature"]
     assert temperature["total"] == picked.way.errors["mean_temperature"].total
     (headline,) = (one for one in made["headlines"] if one["name"] == "mean_temperature")
-    assert temperature["found"] == pytest.approx(headline["misfit"])
+    assert temperature["found"] == pytest.approx(headline["difference"])
     (headline,) = (one for one in made["headlines"] if one["name"] == "mean_pressure")
-    assert told["errors"]["mean_pressure"]["found"] == pytest.approx(headline["misfit"] / headline["theory"])
+    assert told["errors"]["mean_pressure"]["found"] == pytest.approx(headline["difference"] / headline["theory"])
 
     kept = provenance.parameters(output.read(file))
     assert kept["engine"] == picked.way.engine
@@ -362,8 +362,11 @@ def test_a_known_bias_excuses_a_misfit_to_its_side_alone():
 
 def test_a_misfit_that_only_a_known_bias_excuses_is_told():
     lines = headline_lines([headline(302.5, bias=2.0)], 200)
-    assert lines[1].endswith("as stated")
-    assert lines[-1] == "temperature: up to 2.20 K off, because the measured error of this engine is that large."
+    assert lines[1].endswith("yes, with the stated model error")
+    assert " ".join(lines[2:]) == (
+        "expected within: 4 standard errors (chance) plus 2.2 K, because the box is small, and "
+        "the measured error of this engine is that large."
+    )
     assert headline_lines([headline(300.3, bias=2.0)], 200)[1].endswith("yes")
 
 
@@ -384,7 +387,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     cold["mean_temperature_se"] = cold.mean_temperature_se.copy(data=10.0)
     again = output.read(output.write(cold, tmp_path / "classic.nc"))
     warm = next(one for one in runner.headlines_of(again) if one.name == "mean_temperature")
-    assert (warm.bias, warm.verdict, warm.excuse) == (-3.0, "as stated", ENGINE_IS_OFF)
+    assert (warm.bias, warm.verdict, warm.excuse) == (-3.0, AS_STATED, ENGINE_IS_OFF)
     (said,) = (one for one in runner.verify(again) if one.name == "mean_temperature")
     assert said.passed
     assert said.sentence.endswith(ENGINE_IS_OFF)

@@ -283,7 +283,7 @@ def test_a_run_prints_its_table_its_ledger_its_cost_its_file_and_what_to_type_ne
     dataset = output.read(f"{SCENE}.nc")
     for headline in runner.headlines_of(dataset):
         assert headline.label in result.stdout
-    for text in ("within error?", "±", "energy ledger closes to ", " collisions in ", " a second"):
+    for text in ("agrees?", "±", "energy budget: closed to ", " collisions in ", " a second"):
         assert text in result.stdout
     assert result.stdout.endswith(f"\nfile: {SCENE}.nc\nnext: atmosbox plot {SCENE}.nc\n")
 
@@ -640,7 +640,7 @@ def test_a_ledger_that_does_not_close_ends_with_3_and_keeps_the_file(folder, mon
     monkeypatch.setattr(runner, "execute", lambda *a, **k: execute(*a, **k)._replace(ledger=1e-3))
     result = atmosbox_in_process(*SHORT)
     assert result.exit_code == 3
-    assert "energy ledger does not close" in result.stdout
+    assert "energy budget: not closed" in result.stdout
     assert f"atmosbox check {SCENE}.nc" in result.stderr
     assert Path(f"{SCENE}.nc").exists()
 
@@ -889,7 +889,7 @@ def test_no_value_of_a_result_is_cut_at_any_width():
             report.headline_lines([wide, a_headline(value=-1e9, error=3e7, unit="s-1", display="s-1")], width)
         )
         words = " ".join(text.split())
-        for value in ("14.999 ± 0.031", "14.850", "+0.149 (4.8σ)", "no", "(-1.000 ± 0.030)e9", "0.000e9"):
+        for value in ("14.999 ± 0.031", "14.850", "+0.149 K", "no", "(-1.000 ± 0.030)e9", "0.000e9"):
             assert value in words
         assert "…" not in text
 
@@ -914,16 +914,17 @@ def test_the_verdict_is_that_of_the_headline():
     cases = [
         (a_headline(error=0.1), "yes"),
         (a_headline(error=0.01), "no"),
-        (a_headline(theory=None), "-"),
         (a_headline(value=float("nan")), "no"),
     ]
     for headline, verdict in cases:
         assert report.headline_lines([headline], 200)[1].split()[-1] == verdict
+    assert report.headline_lines([a_headline(theory=None, error=0.1)], 200)[0].split() == ["quantity", "measured"]
 
 
-def test_a_misfit_that_only_the_model_excuses_is_explained():
+def test_a_difference_that_only_the_model_explains_is_explained():
     lines = report.headline_lines([a_headline(error=0.01, tolerance=0.5)], 200)
-    assert lines[-1] == "temperature: up to 0.500 K off, because the box is small."
+    assert lines[1].endswith("±0.54 K          yes, with the stated model error")
+    assert lines[-1] == "expected within: 4 standard errors (chance) plus 0.5 K, because the box is small."
 
 
 def test_a_run_without_headlines_says_why():

@@ -28,6 +28,10 @@ def headline(name="lapse_rate", value=9.7e-3, **fields):
         "chance": 4e-4,
         "known": 4e-4,
         "verdict": None,
+        "low": None,
+        "high": None,
+        "resolved": True,
+        "program": "",
     }
     return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
 

@@ -6,11 +6,16 @@ import warnings
 import pytest
 from typer.testing import CliRunner
 
+from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.engine import CoarseStepWarning, Parcel
+from atmosbox.engine.core.energy_budget import GIVEN, STORES
 from atmosbox.errors import SettingError, UnknownSettingError
 from atmosbox.scene.engines import ENGINES, EXACT, FEW, choose, used
 from atmosbox.simulation import runner
+from atmosbox.simulation.preparation import build
+from atmosbox.simulation.recording import Recording
+from tests.in_process import typed
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -119,28 +124,97 @@ def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
     assert "classic:delta=0.2" in again.output
 
 
-@pytest.mark.parametrize(
-    ("scene", "engine", "settings"),
-    [
-        ("atmosphere", "exact", {"plane": True}),
-        ("atmosphere", "stepped:delta=0.8", {}),
-        ("atmosphere", "stepped:delta=0.8,motion=euler", {}),
-        ("atmosphere", "dsmc", {}),
-        ("atmosphere", "classic:delta=8", {"plane": True, "knudsen": 0.05}),
-        ("lifting-dry", "stepped:delta=0.8", {"ascent": 50}),
-        ("lifting-dry", "dsmc", {"ascent": 50}),
-        ("temperature", "classic:delta=0.8", {"duration": 1}),
-    ],
-)
-def test_the_books_of_every_engine_can_be_checked_in_its_file(scene, engine, settings):
-    """Energy minus heat, work and the energy made by the scheme is the same in all frames, with every engine."""
-    few = {"molecules": 300} | ({"duration": 5} if scene == "atmosphere" else {})
+MOVES, SPINS, FALLS, LIQUID = STORES
+WALLS, PISTON, GRAVITY, SCHEME, BATH, ATTRACTION, STIRRING = GIVEN
+SMALL = {"molecules": 200}
+DRY = {"molecules": 200, "ascent": 50}
+LIFTED = {"molecules": 300, "ascent": 20}
+HILLS = {"molecules": 300, "travel": 20}
+CLUMP = {"molecules": 200, "start": "drop", "density": 0.15, "duration": "0.4 ns"}
+PARTS = [
+    ("temperature", "", {}, {}, {MOVES, WALLS}),
+    ("temperature-large", "", SMALL, {}, {MOVES, WALLS}),
+    ("temperature", "classic:delta=0.8", {"duration": 1}, {}, {MOVES, WALLS}),
+    ("elastic-collisions", "", {}, {}, {MOVES}),
+    ("diffusion", "", {"molecules": 300, "mass_ratio": 4}, {}, {MOVES}),
+    ("atmosphere", "exact", SMALL, {}, {MOVES, FALLS, WALLS}),
+    ("atmosphere", "exact", SMALL, {"gravity": 5.0}, {MOVES, FALLS, WALLS, GRAVITY}),
+    ("atmosphere", "exact", SMALL | {"plane": True}, {}, {MOVES, FALLS, WALLS}),
+    ("atmosphere", "exact", SMALL | {"start": "bottom", "floor": "isolated"}, {}, {MOVES, FALLS}),
+    ("atmosphere", "stepped:delta=0.8", SMALL, {}, {MOVES, FALLS, WALLS}),
+    ("atmosphere", "stepped:delta=0.8,motion=euler", SMALL, {}, {MOVES, FALLS, WALLS, SCHEME}),
+    ("atmosphere", "classic:delta=8", SMALL | {"plane": True, "knudsen": 0.05}, {}, {MOVES, FALLS, WALLS, SCHEME}),
+    ("atmosphere", "dsmc", SMALL | {"rotation": True}, {}, {MOVES, SPINS, FALLS, WALLS}),
+    ("atmosphere", "", {"stirring": 50}, {}, {MOVES, SPINS, FALLS, WALLS, STIRRING}),
+    ("atmosphere", "", {"stirring": 50, "exchange": "molecules"}, {}, {MOVES, SPINS, FALLS, WALLS}),
+    ("attraction", "", CLUMP, {}, {MOVES, FALLS, BATH}),
+    ("attraction", "", CLUMP, {"attraction": 0.5}, {MOVES, FALLS, BATH, ATTRACTION}),
+    ("attraction", "", CLUMP | {"bath": "none", "air": 0.1}, {}, {MOVES, FALLS}),
+    ("attraction", "", CLUMP | {"bath": "walls"}, {}, {MOVES, FALLS, WALLS}),
+    ("attraction", "", {"molecules": 200, "attraction": 0}, {}, {MOVES, BATH}),
+    ("attraction", "", {"molecules": 300, "start": "slab", "density": 1.0}, {}, {MOVES, FALLS, BATH}),
+    ("attraction", "", {"molecules": 300, "start": "pool", "density": 0.8}, {}, {MOVES, FALLS, BATH}),
+    ("condensation", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
+    ("condensation", "", {"molecules": 300, "drops": 2}, {}, {MOVES, SPINS, LIQUID, WALLS}),
+    ("nuclei", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
+    ("evaporation", "", {"molecules": 300, "pool": 60}, {}, {MOVES, SPINS, LIQUID, PISTON}),
+    ("lifting-dry", "", DRY, {}, {MOVES, SPINS, PISTON}),
+    ("lifting-dry", "", DRY | {"rotation": False}, {}, {MOVES, PISTON}),
+    ("lifting-dry", "stepped:delta=0.8", DRY, {}, {MOVES, SPINS, PISTON}),
+    ("lifting-dry", "dsmc", DRY, {}, {MOVES, SPINS, PISTON}),
+    ("lifting-moist", "", LIFTED, {}, {MOVES, SPINS, LIQUID, PISTON}),
+    ("lifting-moist", "dsmc", LIFTED | {"rain": True}, {}, {MOVES, SPINS, LIQUID, PISTON}),
+    ("lifting-sounding", "", LIFTED, {}, {MOVES, SPINS, LIQUID, PISTON}),
+    ("mountains", "", HILLS, {}, {MOVES, SPINS, LIQUID, PISTON}),
+]
+
+
+@pytest.mark.parametrize(("scene", "engine", "settings", "turned", "terms"), PARTS)
+def test_energy_minus_heat_and_work_is_constant_in_every_scene_with_every_switch(
+    scene, engine, settings, turned, terms
+):
+    prepared = runner.prepare(scene, settings, engine=engine or None)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseStepWarning)
-        made = runner.run(scene, engine=engine, **(few | settings))
-    checks = {check.name: check for check in runner.verify(made)}
-    for name in ("complete", "finite", "ledger", "balance"):
-        assert checks[name].passed, checks[name].sentence
-    euler = "euler" in engine or (engine.startswith("classic") and scene == "atmosphere")
-    assert ("numerical_heat" in made) == euler
-    assert ("10.1063/1.869674" in made.attrs.get("references", "")) == (engine == "dsmc")
+        recording = Recording(prepared, build(prepared), {})
+        for frame in range(4):
+            if frame == 2:
+                for knob in recording.setup.knobs:
+                    if knob.name in turned:
+                        knob.set(turned[knob.name])
+            recording.advance(lambda now: None)
+    made = recording.dataset("complete", judged=False)[0]
+    assert {name for name in (*STORES, *GIVEN) if name in made and made[name].values.any()} == terms
+    for check in runner.verify(made):
+        assert check.passed, check.sentence
+
+
+def test_every_scene_is_among_those_whose_energy_is_checked():
+    assert {row[0] for row in PARTS} == set(scenarios.names())
+
+
+def test_a_term_that_is_left_out_of_the_budget_is_found():
+    prepared = runner.prepare("attraction", CLUMP)
+    recording = Recording(prepared, build(prepared), {})
+    for _ in range(4):
+        recording.advance(lambda now: None)
+    made = recording.dataset("complete", judged=False)[0].drop_vars("heat_from_bath")
+    failed = [check for check in runner.verify(made) if not check.passed]
+    assert [check.name for check in failed] == ["balance"]
+    assert "is not constant" in failed[0].sentence
+
+
+def test_the_default_thermostat_of_attraction_passes_the_check(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["--set", "molecules=60", "--set", "duration=0.02ns"]
+    assert typed("run", "attraction", *words).exit_code == 0
+    checked = typed("check", "attraction.nc")
+    assert checked.exit_code == 0, checked.output
+    assert "FAILED" not in checked.output
+
+
+def test_a_file_of_an_engine_names_its_source_and_the_energy_of_its_scheme():
+    for engine, source in (("dsmc", True), ("exact", False)):
+        made = runner.run("atmosphere", engine=engine, molecules=300, duration=5)
+        assert "numerical_heat" not in made
+        assert ("10.1063/1.869674" in made.attrs.get("references", "")) == source

@@ -493,7 +493,7 @@ def test_ctrl_c_writes_nothing(tmp_path, monkeypatch):
 def test_a_run_whose_energy_is_not_accounted_for_gives_no_sheet(monkeypatch):
     honest = runner.execute
     monkeypatch.setattr(runner, "execute", lambda *a, **k: honest(*a, **k)._replace(ledger=1e-3))
-    with pytest.raises(PhysicsError, match="The energy ledger of run A is off by 1e-03"):
+    with pytest.raises(PhysicsError, match="The energy budget of run A is off by 1e-03"):
         sheets.worksheet("elastic-collisions", {"duration": "2 s"}, answers=True)
 
 
@@ -506,8 +506,8 @@ def test_a_run_that_disagrees_with_theory_is_named(monkeypatch):
 
     monkeypatch.setattr(runner, "execute", off)
     sheet = sheets.worksheet("elastic-collisions", {"duration": "2 s"}, answers=True)
-    assert "Run A disagrees with theory: largest change of the energy." in sheet.disagreements
-    assert "Run A disagrees with theory: largest change of the energy." in sheet.text
+    assert "Run A disagrees with theory: largest relative change of the energy." in sheet.disagreements
+    assert "Run A disagrees with theory: largest relative change of the energy." in sheet.text
 
 
 @pytest.mark.parametrize("scene", ["attraction", "elastic-collisions", "lifting-dry"])

@@ -54,7 +54,7 @@ def check(
 ) -> None:
     """Verify the physics in a file, or the engines in extreme cases.
 
-    Of a file: does the energy ledger close, does the run agree with theory, does the file keep to the CF
+    Of a file: is the energy budget closed, does the run agree with theory, does the file keep to the CF
     conventions? With --extremes: is each engine right where simulations hang, lose molecules or give wrong
     results? The exit status is 3 if anything fails.
     """

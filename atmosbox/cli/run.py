@@ -152,7 +152,7 @@ def run(
         from atmosbox.text.report import next_command
 
         raise PhysicsError(
-            f"The energy ledger of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
+            f"The energy budget of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
             f"type {next_command('check', checkpoint.path)} to see what else is."
         )
 

@@ -240,7 +240,7 @@ def _judge(grid: Plan, swept: Swept, path: Path) -> None:
         if failed is not None:
             tell(f"error: {failed}")
         raise PhysicsError(
-            f"The energy ledger of a run of this sweep is off by {swept.ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
+            f"The energy budget of a run of this sweep is off by {swept.ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
             f"see member_ledger in {path}."
         )
     if failed is not None:

@@ -49,6 +49,14 @@ class _Headline(Protocol):
     def label(self) -> str: ...
     @property
     def reason(self) -> str | None: ...
+    @property
+    def low(self) -> float | None: ...
+    @property
+    def high(self) -> float | None: ...
+    @property
+    def resolved(self) -> bool: ...
+    @property
+    def program(self) -> str: ...
 
 
 def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
@@ -64,8 +72,9 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
     dict
         Variables without dimensions by their names; the attribute ``display_units`` keeps the unit in which
         a table shows them. If the headline has a verdict, ``misfit_allowed_by_chance`` and ``misfit_allowed_as_known``
-        say how far the value may be from theory, and ``within_error`` whether it is that near: yes (within chance
-        alone), as stated (within the known error of the model), or no.
+        say how far the value is expected to be from theory, and ``within_error`` whether it is that near: yes, yes with
+        the stated model error, or no. ``possible_range`` is the range in which the value must be; ``resolved`` is 0 if
+        the run is too small to measure it. ``program`` is another program that computed the value.
 
     Examples
     --------
@@ -87,6 +96,10 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
     if headline.verdict is not None:
         allowed = {"misfit_allowed_by_chance": headline.chance, "misfit_allowed_as_known": headline.known}
         held[parent.name].attrs |= {**allowed, "within_error": headline.verdict}
+    if headline.low is not None and headline.high is not None:
+        held[parent.name].attrs |= {"possible_range": [headline.low, headline.high], "resolved": int(headline.resolved)}
+    if headline.program:
+        held[parent.name].attrs["program"] = headline.program
     return held
 
 

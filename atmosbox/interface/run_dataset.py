@@ -43,19 +43,15 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
 
     def _repr_html_(self) -> str:
         """Return the same for a notebook."""
-        from atmosbox.text.report import headline_cells
+        from atmosbox.text.report import headline_tables
 
         dataset = str(xr.Dataset._repr_html_(self)).replace("xarray.RunDataset", "xarray.Dataset")
         said = _said(self)
         if said is None:
             return dataset
-        header, rows, notes = headline_cells(said.headlines)
-        lines = [_row("th", header), *(_row("td", row) for row in rows)] if rows else []
-        below = "<br>".join(map(html.escape, [*notes, *said.notes]))
-        return (
-            f'<div><strong>{html.escape(said.head)}</strong><table style="text-align:left;font-size:90%">'
-            f"{''.join(lines)}</table><small>{below}</small></div>{dataset}"
-        )
+        tables = "".join(_table(*each) for each in headline_tables(said.headlines))
+        below = "<br>".join(map(html.escape, said.notes))
+        return f"<div><strong>{html.escape(said.head)}</strong>{tables}<small>{below}</small></div>{dataset}"
 
 
 class _Said(NamedTuple):
@@ -71,6 +67,13 @@ def as_run(dataset: xr.Dataset) -> RunDataset:
     made = dataset.copy()
     made.__class__ = RunDataset
     return made  # type: ignore[return-value]
+
+
+def _table(header: list[str], rows: list[list[str]], notes: list[str]) -> str:
+    """Return a table as HTML, with its sentences below."""
+    lines = [_row("th", header), *(_row("td", row) for row in rows)] if rows else []
+    below = "<br>".join(map(html.escape, notes))
+    return f'<table style="text-align:left;font-size:90%">{"".join(lines)}</table><small>{below}<br></small>'
 
 
 def _row(tag: str, cells: list[str]) -> str:

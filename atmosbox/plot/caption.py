@@ -14,8 +14,6 @@ from atmosbox.plot.plane import axis_names
 from atmosbox.plot.unit import convert, of_difference, power_of_ten, spelled
 from atmosbox.scene.panels import Panel
 
-HIDDEN = 0.5
-"""A known error of the model is left out of figures if it is at most this many standard errors."""
 _COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")
 
 
@@ -107,16 +105,18 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
     >>> [words.split() for words in headline(dataset, "t")[3:]]
     [['adiabat', '204.41', 'K'], ['difference', '+0.12', 'K']]
 
-    The known error of the model follows, unless it is small beside the standard error:
+    How far it is expected to be from theory at most follows, by chance and by the known error of the model together:
 
-    >>> dataset.t.attrs["misfit_allowed_as_known"] = 0.1
-    >>> headline(dataset, "t").difference.split()
-    ['difference', '+0.12', 'K,', 'model', '±', '0.10', 'K']
+    >>> dataset.t.attrs |= {"misfit_allowed_by_chance": 0.2, "misfit_allowed_as_known": 0.1}
+    >>> headline(dataset, "t").difference.replace("\u00a0", " ")
+    'difference +0.12 K, expected within ±0.30 K'
     """
     value = _scalar(dataset, name)
     if not math.isfinite(value):
         return None
     attrs = read(dataset, name).attrs
+    if not attrs.get("resolved", True):  # the run is too small to measure it
+        return None
     unit = str(attrs.get("units", "1"))
     shown = str(attrs.get("display_units", unit))
     theory = _scalar(dataset, f"{name}_theory")
@@ -129,13 +129,16 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
         return Reading(label, digits, spread, "", "")
     expected = float(convert(theory, unit, shown, name=name))
     called = str(read(dataset, f"{name}_theory").attrs.get("display_name", "theory"))
-    apart, model = (
+    apart, most = (
         float(convert(size, unit, of_difference(shown), name=name, difference=True))
-        for size in (value - theory, attrs.get("misfit_allowed_as_known", 0.0))
+        for size in (
+            value - theory,
+            sum(attrs.get(f"misfit_allowed_{part}", 0.0) for part in ("by_chance", "as_known")),
+        )
     )
     away = _known(apart, error, _symbol(of_difference(shown)), signed=True)
-    if error > 0.0 and model > HIDDEN * error:
-        away += f", model\u00a0±\u00a0{_known(model, error, _symbol(of_difference(shown)))}"
+    if most > 0.0:
+        away += f", expected within ±{_known(most, error, _symbol(of_difference(shown)))}"
     return Reading(
         label,
         digits,

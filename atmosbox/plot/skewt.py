@@ -74,7 +74,7 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
     """
     found: dict[str, float] = {}
     for name in panel.marks:
-        if name not in dataset.variables:
+        if name not in dataset.variables or not dataset[name].attrs.get("resolved", True):
             continue
         variable = read(dataset, name)
         if variable.ndim:

@@ -174,7 +174,7 @@ def _spans(values: Floats) -> bool:
 
 
 def _misfit(swept: Varied, name: str) -> str:
-    """Return text with the misfit at the point where it is most standard errors; empty without theory or errors."""
+    """Return text with the difference from theory where it is most standard errors; empty without theory or errors."""
     dataset, answer = swept.dataset, swept.theory(name)
     if answer is None or f"{name}_se" not in dataset:
         return ""
@@ -195,4 +195,4 @@ def _misfit(swept: Varied, name: str) -> str:
         where.append(word if swept.numeric(dim) and " " in word else f"{swept.name(dim)} {word}")
     spelling = of_difference(shown)
     units = "" if spelling == "1" else f" {spelled(spelling)}"
-    return f"worst misfit (at {', '.join(where)}) = {number(*values, signed=True)}{units}"
+    return f"largest difference (at {', '.join(where)}) = {number(*values, signed=True)}{units}"

@@ -187,7 +187,7 @@ def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | Non
     Raises
     ------
     PhysicsError
-        If the energy ledger of a run does not close.
+        If the energy budget of a run is not closed.
     EngineError
         If the engine cannot go on.
 
@@ -207,7 +207,7 @@ def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | Non
         outcome = runner.execute(trial.prepared, progress=show, command=trial.command)
         if not outcome.ledger <= runner.LEDGER_LIMIT:
             raise PhysicsError(
-                f"The energy ledger of run {trial.letter} is off by {outcome.ledger:.0e}, "
+                f"The energy budget of run {trial.letter} is off by {outcome.ledger:.0e}, "
                 f"more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it."
             )
         made.append(replace(trial, outcome=outcome))

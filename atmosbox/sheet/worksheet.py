@@ -189,7 +189,7 @@ def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool,
     if lab:
         content["row"] = []
     elif not words.row:
-        found = runs[0].headlines.values()
+        found = [each for each in runs[0].headlines.values() if each.resolved and not each.program]
         content["row"] = [
             {"headline": h.name, "label": h.label, "unit": h.display_unit, "theory": "", "runs": "ABCD"} for h in found
         ]
@@ -232,10 +232,10 @@ def _about(first: runner.Prepared, answers: bool) -> str:
 
 
 def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
-    """Return the line of a run for a quantity: letter, measurement, theory, misfit; without answers to be filled in."""
+    """Return the line of a run for a quantity: letter, measurement, theory, difference over error; empty to fill in."""
     if not answers:
         return run.letter, "±", "", ""
-    if name not in run.headlines:
+    if name not in run.headlines or not run.headlines[name].resolved:
         return run.letter, "not reported", "–", "–"
     found = run.fact(name)
     theory = "–" if found.theory is None else theoretical(found.theory, found.s)
@@ -245,7 +245,7 @@ def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
 
 
 def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
-    """Return sentences on numbers of the table whose misfit is more than chance, with the reason given by the scene."""
+    """Return sentences on numbers that agree with theory only with the stated model error, and its reason."""
     excuses: dict[str, list[str]] = {}
     for run in runs:
         for each in run.headlines.values():
@@ -253,4 +253,7 @@ def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
                 known = bare(from_si(each.known, each.display_unit, difference=True), 2)
                 allowed = f"{known} {spelled(each.difference_unit)}".rstrip()
                 excuses.setdefault(each.excuse, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
-    return [f"More than chance: {'; '.join(numbers)}, because {reason}." for reason, numbers in excuses.items()]
+    return [
+        f"More than four standard errors: {'; '.join(numbers)}, because {reason}."
+        for reason, numbers in excuses.items()
+    ]

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.scene.conversion import from_si
-from atmosbox.scene.headline import AS_STATED, CHANCE_LIMIT
+from atmosbox.scene.conversion import from_si, slashed
+from atmosbox.scene.headline import CHANCE
 from atmosbox.scene.quantity import phrase
 from atmosbox.text.table import digits, measurement, number, table, wrapped
 
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline
     from atmosbox.scene.parameter import Parameter
     from atmosbox.simulation.runner import Card, Outcome
-
-_ALIKE = {1: "", 2: "both "}
 
 
 def next_command(command: str, path: Path) -> str:
@@ -44,10 +42,10 @@ def _shown(headline: Headline) -> dict[str, Any]:
         "value": from_si(headline.value, unit),
         "standard_error": difference(headline.standard_error),
         "theory": None if headline.theory is None else from_si(headline.theory, unit),
-        "misfit": difference(headline.misfit),
+        "difference": difference(headline.misfit),
         "tolerance": difference(headline.tolerance),
         "bias": difference(headline.bias),
-        "allowed": difference(headline.allowed),
+        "expected_within": difference(headline.allowed),
         "chance": difference(headline.chance),
         "known": difference(headline.known),
     }
@@ -62,81 +60,126 @@ def headline_json(headline: Headline) -> dict[str, Any]:
         **_shown(headline),
         "reason": headline.excuse,
         "agrees": headline.agrees,
-        "within_error": headline.verdict,
+        "verdict": headline.verdict,
+        "resolved": headline.resolved,
+        "program": headline.program,
     }
 
 
 def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
-    r"""Return the table of measured values, theory and allowed differences, and why a model may differ from theory.
+    r"""Return the table of measured values and theory, and in words how far they are expected to be apart.
 
     Examples
     --------
     >>> from atmosbox.scene.headline import Headline
     >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.5, "the box is small", "K", "degC", "temperature")
     >>> print("\n".join(headline_lines([warm], 100)))
-    quantity            measured    theory  misfit       allowed  within error?
-    temperature [degC]  17.9 ± 2.0  14.9    +3.0 (1.5σ)  4σ+0.5   yes
-    allowed: 4 standard errors σ, by chance, + the known error of the model
+    quantity            measured    theory  difference  expected within  agrees?
+    temperature [degC]  17.9 ± 2.0  14.9    +3.0 K      ±8.5 K           yes
+    expected within: 4 standard errors (chance) plus 0.5 K, because the box is small.
     """
-    header, rows, notes = headline_cells(headlines)
-    lines = table(header, rows, width) if rows else []
-    return [*lines, *(line for note in notes for line in wrapped(note, width))]
+    lines: list[str] = []
+    for header, rows, notes in headline_tables(headlines):
+        lines += [""] * bool(lines) + (table(header, rows, width, narrowest=12) if rows else [])
+        lines += [line for note in notes for line in wrapped(note, width)]
+    return lines
 
 
-def headline_cells(headlines: Sequence[Headline]) -> tuple[list[str], list[list[str]], list[str]]:
-    """Return the table of headlines as cells: names of the columns, a row for each headline, and the sentences below.
+def headline_tables(headlines: Sequence[Headline]) -> list[tuple[list[str], list[list[str]], list[str]]]:
+    """Return the results as tables: names of the columns, a row for each number, and the sentences below.
+
+    The first is of what was measured, the second, if there is one, of numbers of two programs. A column in which no
+    row has an entry is left out.
 
     Examples
     --------
-    >>> headline_cells([])[2]
+    >>> headline_tables([])[0][2]
     ['No frame is late enough for an average.']
     """
-    rows: list[list[str]] = []
-    notes: dict[str, list[str]] = {}
-    for headline in headlines:
-        shown = _shown(headline)
-        value, error = shown["value"], shown["standard_error"]
-        near = error or (shown["tolerance"] if shown["theory"] else 0.1 * abs(value))
-        decimals, power = digits(value, near)
-        theory = misfit = allowed = "-"
-        if headline.verdict is not None:
-            theory = number(shown["theory"], decimals, power)
-            misfit = number(shown["misfit"], decimals, power, "+")
-            if error > 0.0 and math.isfinite(shown["misfit"] / error):
-                misfit += f" ({abs(shown['misfit']) / error:.1f}σ)"
-            known = number(shown["known"], decimals, power) if error > 0.0 else number(shown["known"])
-            chance = [f"{CHANCE_LIMIT:g}σ"] if error > 0.0 else []
-            allowed = "+".join([*chance, known] if not chance or float(known) else chance)
-            if headline.verdict == AS_STATED:
-                known = f"{known} {headline.difference_unit}".rstrip()
-                notes.setdefault(headline.excuse, []).append(f"{headline.label}: up to {known} off")
-        unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
-        found = measurement(value, error) if error > 0.0 else number(value, decimals, power)
-        rows.append([headline.label + unit, found, theory, misfit, allowed, headline.verdict or "-"])
-    header = ["quantity", "measured", "theory", "misfit", "allowed", "within error?"]
-    if not rows:
-        return header, rows, ["No frame is late enough for an average."]
-    said = []
-    if any("σ" in row[4] for row in rows):
-        known = ", + the known error of the model" if any("+" in row[4] for row in rows) else ""
-        said.append(f"allowed: {CHANCE_LIMIT:g} standard errors σ, by chance{known}")
-    said += [
-        f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}because {reason}." for reason, which in notes.items()
+    if not headlines:
+        return [([], [], ["No frame is late enough for an average."])]
+    rows = [_row(each) for each in headlines if each.resolved and not each.program]
+    header = ["quantity", "measured", "theory", "difference", "expected within", "agrees?"]
+    filled = [k for k in range(len(header)) if k < 2 or any(row[k] for row in rows)]
+    notes = [*_expected(headlines), *(_too_small(each) for each in headlines if not each.resolved)]
+    made = [([header[k] for k in filled], [[row[k] for k in filled] for row in rows], notes)]
+    compared = [each for each in headlines if each.program]
+    if compared:
+        lines = [[_named(each), *(_rounded(_shown(each)[part]) for part in ("value", "theory"))] for each in compared]
+        reasons = dict.fromkeys(f"{each.reason[:1].upper()}{each.reason[1:]}." for each in compared if each.reason)
+        made.append((["two programs compared", compared[0].program, "atmosbox"], lines, list(reasons)))
+    return made
+
+
+def _named(headline: Headline) -> str:
+    """Return the name of a number with its unit."""
+    return headline.label + ("" if headline.display_unit in ("", "1") else f" [{slashed(headline.display_unit)}]")
+
+
+def _rounded(value: float) -> str:
+    """Return a number with four significant digits, and no power of ten where it is easy to read without."""
+    size = abs(value)
+    return number(value, *digits(value, 1e-2 * 10.0 ** math.floor(math.log10(size)))) if 0.0 < size < math.inf else "0"
+
+
+def _row(headline: Headline) -> list[str]:
+    """Return the row of a result; what it does not have is empty."""
+    shown = _shown(headline)
+    value, error = shown["value"], shown["standard_error"]
+    near = error or (shown["tolerance"] if shown["theory"] else 0.1 * abs(value))
+    decimals, power = digits(value, near)
+    found = measurement(value, error) if error > 0.0 else number(value, decimals, power)
+    if headline.verdict is None:
+        return [_named(headline), found, "", "", "", ""]
+    theory = number(shown["theory"], decimals, power) if shown["theory"] else "0"
+    difference = number(shown["difference"], decimals, power, "+")
+    return [
+        _named(headline),
+        found,
+        theory,
+        f"{difference} {slashed(headline.difference_unit)}".rstrip(),
+        headline.shown(headline.allowed, "±"),
+        headline.verdict,
     ]
-    return header, rows, said
+
+
+def _expected(headlines: Sequence[Headline]) -> list[str]:
+    """Return a sentence that explains the column `expected within`, with every reason for a known error."""
+    judged = [each for each in headlines if each.verdict is not None]
+    if len({each.expectation for each in judged}) == 1:
+        return [f"expected within: {judged[0].expectation}."]
+    said = [CHANCE] if any(each.standard_error for each in judged) else []
+    reasons: dict[str, list[str]] = {}
+    for each in judged:
+        if each.tells:
+            reasons.setdefault(each.model_reason, []).append(f"{each.shown(each.known)} for {each.label}")
+    for reason, sizes in reasons.items():
+        said.append(f"{'plus ' * bool(said)}{', '.join(sizes)}, because {reason}")
+    return [f"expected within: {'; '.join(said)}."] if judged else []
+
+
+def _too_small(headline: Headline) -> str:
+    """Return a sentence on a number that this run is too small to measure."""
+    unit = f" {slashed(headline.display_unit)}".rstrip()
+    low, high = (f"{from_si(end or 0.0, headline.display_unit):.4g}" for end in (headline.low, headline.high))
+    found = measurement(_shown(headline)["value"], _shown(headline)["standard_error"])
+    return (
+        f"{headline.label}: this run is too small to measure it ({found}{unit}, where {low} to {high}{unit} is "
+        f"possible): set {headline.needed:.0f} times as many molecules."
+    )
 
 
 def ledger_line(ledger: float, limit: float) -> str:
-    """Return a line that says how well the energy ledger closes.
+    """Return a line that says whether the energy budget is closed.
 
     Examples
     --------
     >>> ledger_line(3.2e-15, 1e-10), ledger_line(4e-6, 1e-10)
-    ('energy ledger closes to 3e-15', 'energy ledger does not close: 4e-06, where at most 1e-10 is allowed')
+    ('energy budget: closed to 3e-15', 'energy budget: not closed, 4e-06 is missing, where at most 1e-10 may be')
     """
     if ledger <= limit:
-        return f"energy ledger closes to {ledger:.0e}"
-    return f"energy ledger does not close: {ledger:.0e}, where at most {limit:.0e} is allowed"
+        return f"energy budget: closed to {ledger:.0e}"
+    return f"energy budget: not closed, {ledger:.0e} is missing, where at most {limit:.0e} may be"
 
 
 def made_line(made: float) -> str:

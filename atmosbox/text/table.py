@@ -11,7 +11,7 @@ LONGEST_LINE = 100  # columns of running text, however wide the terminal is
 NARROWEST = 20  # columns for a cell that is broken into lines
 
 
-def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
+def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narrowest: int = NARROWEST) -> list[str]:
     r"""Return the lines of a table; no cell is cut off.
 
     Parameters
@@ -21,8 +21,10 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
     rows
         The cells.
     width
-        Largest number of characters in a line. To fit, the last cell of a row and then the first are broken into
-        lines; if that is not enough, each row becomes a block of lines.
+        Largest number of characters in a line. To fit, the names of columns are broken into lines, then the last cell
+        of a row and the first; if that is not enough, each row becomes a block of lines.
+    narrowest
+        Least number of characters of a cell that is broken into lines; no word is broken.
 
     Examples
     --------
@@ -37,11 +39,18 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
     if not lines:
         return []
     sizes = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
-    for column in (-1, 0):
+    columns = list(zip(*rows, strict=True)) or [()] * len(header)
+    words = [max(map(len, name.split()), default=0) for name in header]
+
+    def shrink(column: int, least: int) -> None:
         excess = max(sum(sizes) + 2 * len(sizes) - 2 - width, 0)
-        words = [*header[column].split(), *(row[column] for row in rows)]  # names of columns are broken before cells
-        least = min(max(map(len, words), default=0), NARROWEST)
-        sizes[column] = max(sizes[column] - excess, least)
+        sizes[column] = max(sizes[column] - excess, min(least, sizes[column]))
+
+    for column in reversed(range(len(sizes))):
+        shrink(column, max([words[column], *map(len, columns[column])]))
+    for column in (-1, 0):
+        longest = max(map(len, " ".join(columns[column]).split()), default=0)
+        shrink(column, max([words[column], longest, min(max(map(len, columns[column]), default=0), narrowest)]))
     if sum(sizes) + 2 * len(sizes) - 2 > width:
         return _blocks(header, rows, width)
     made = []

@@ -46,6 +46,7 @@ from atmosbox.theory.barometric import (
     barometric_pressure,
     column_floor_ratio,
     column_mean_height,
+    column_scale_height,
 )
 from atmosbox.theory.buoyancy import Convection, cape_cin, parcel_buoyancy
 from atmosbox.theory.cloud_base import CloudBase, measured_cloud_base
@@ -210,6 +211,7 @@ __all__ = [
     "collision_rate_discs",
     "column_floor_ratio",
     "column_mean_height",
+    "column_scale_height",
     "column_temperature",
     "compressibility_factor",
     "compressibility_factor_discs",

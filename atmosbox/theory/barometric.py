@@ -5,6 +5,8 @@ centres of spheres can come no nearer to a wall than their radius: for them the 
 and ends one radius below the ceiling.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -110,6 +112,36 @@ def column_mean_height(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity
     closed = 1.0 / steep - np.exp(-steep) / -np.expm1(-steep)
     mean: FloatArray = as_floats(depth) * np.where(flat, series, closed)
     return mean
+
+
+def column_scale_height(mean_height: float, depth: float) -> float:
+    r"""Return the scale height of a closed column whose molecules have a mean height.
+
+    Parameters
+    ----------
+    mean_height
+        Mean height of the molecules above the floor [length].
+    depth
+        Depth of the column [length].
+
+    Returns
+    -------
+    float
+        The scale height kT / m g; infinite if the mean height is half the depth or more.
+
+    Examples
+    --------
+    >>> mean = float(column_mean_height(25.0, 8.4, 1.0, 1.0))
+    >>> round(mean, 3), round(column_scale_height(mean, 25.0), 9)
+    (7.057, 8.4)
+    """
+    from scipy.optimize import brentq  # loads slowly
+
+    def off(scale_height: float) -> float:
+        return float(column_mean_height(depth, scale_height, 1.0, 1.0)) - mean_height
+
+    low, high = 1e-3 * mean_height, 1e4 * depth
+    return float(brentq(off, low, high, rtol=1e-14)) if off(low) < 0.0 < off(high) else math.inf
 
 
 def barometric_density(

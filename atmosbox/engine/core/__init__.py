@@ -12,7 +12,8 @@
 `refusal`       the errors
 `inputs`        checks of the numbers that a box is given
 `packing`       packing fraction: the part of the space that molecules fill
-`account`       the tallies of a box, and whether its energy ledger closes
+`energy_budget`  the terms of the energy budget, and how much is missing from it
+`account`       the tallies of a box, and whether its energy budget closes
 `saved_state`   the state of a box as named arrays and plain numbers, for copies and files
 `adjustment`    changes by hand during a run: piston, heat baths, gravity
 `parcel`        the box: its parameters, its state, and the driver of its piston

@@ -1,4 +1,4 @@
-"""The tallies of a box since its start, and whether its energy ledger closes."""
+"""The tallies of a box since its start, and whether its energy budget closes."""
 
 import math
 from abc import ABC, abstractmethod
@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.core.energy_budget import GIVEN, STORES, residual
 from atmosbox.engine.core.state import Tallies, Walls
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 
@@ -121,27 +122,18 @@ class Account(ABC):
         potential = self._gravity * float(np.sum(self.mass * position[:, 2])) if self._gravity else 0.0
         return kinetic, rotational, potential
 
-    def ledger(self) -> float:
-        """Return the error of the energy ledger, relative to the largest of the energies in it [1].
+    def budget(self) -> dict[str, float | Array]:
+        """Return the terms of the energy budget now, by their names in a file [energy]; see `energy_budget`."""
+        stored = zip(STORES, (*self.energy(), self.condensed_energy), strict=True)
+        return dict(stored) | {name: getattr(self, held) for name, held in GIVEN.items()}
 
-        Kinetic + rotational + potential energy and that of a liquid = what there was at the start + heat from the
-        walls and from a random bath + work of the piston + energy from changes of gravity and of attraction + energy
-        that an approximate scheme has made by itself.
-        """
-        parts = self.energy()
-        total = sum(parts) + self.condensed_energy
-        given = self._given()
-        passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work) + abs(self.gravity_work)
-        passed += abs(self.bath_heat) + abs(self.attraction_work)
-        # in deep wells a large kinetic and a large negative potential energy may have a small sum
-        scale = max(abs(total), abs(self._start_energy), passed, *(abs(part) for part in parts))
-        return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
+    def ledger(self) -> float:
+        """Return the energy missing from the energy budget, relative to the largest of the energies in it [1]."""
+        return float(residual(self.budget(), self._start_energy))
 
     def _given(self) -> float:
         """Return all energy that has entered since the start [energy]."""
-        walls = float(self._tallies.heat.sum())
-        given = walls + self.work + self.gravity_work + self.numerical_heat
-        return given + self.bath_heat + self.attraction_work
+        return float(sum(np.sum(getattr(self, held)) for held in GIVEN.values()))
 
     @property
     def bath_heat(self) -> float:
@@ -151,6 +143,11 @@ class Account(ABC):
     @property
     def attraction_work(self) -> float:
         """Energy that changes of the attraction have given since the start [energy]; 0 for hard spheres."""
+        return 0.0
+
+    @property
+    def stirring_work(self) -> float:
+        """Work that stirring has done on the molecules since the start [energy]; 0 without it."""
         return 0.0
 
     @property

@@ -99,9 +99,6 @@ class StirredDsmcParcel(DsmcParcel):
         """
         self._stirring = self._stirring._replace(rate=number(rate, "rate of the stirring", least=0.0))
 
-    def _given(self) -> float:
-        return super()._given() + self.stirring_work
-
     # ------------------------------------------------------------------ how steps are made
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:

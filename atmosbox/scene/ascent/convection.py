@@ -103,7 +103,8 @@ def convection_headlines(
             "the ascent is not infinitely slow, vapour needs time to reach the liquid, and curves are smoothed before "
             "they cross"
         )
-        found.append(Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label))
+        low, high = (ascent.top_pressure, ascent.pressure) if unit == "Pa" else (None, None)
+        found.append(Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label, low=low, high=high))
     return tuple(found)
 
 

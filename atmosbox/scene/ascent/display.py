@@ -243,5 +243,7 @@ def _cloud_base(
             "Pa",
             "hPa",
             "cloud base",
+            low=ascent.top_pressure,
+            high=ascent.pressure,
         )
     ]

@@ -1,4 +1,4 @@
-"""The thermometer, the barometer and the energy ledger of the whole box."""
+"""The thermometer, the barometer and the energy budget of the whole box."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import Parcel, Snapshot
+from atmosbox.engine.core.energy_budget import GIVEN, STORES
 from atmosbox.engine.core.measure import temperature
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
@@ -16,6 +17,8 @@ from atmosbox.scene.units import Scale
 __all__ = ["Air", "open_faces"]
 
 Array = NDArray[np.float64]
+_ALWAYS = {"kinetic_energy", "rotational_energy", "potential_energy", "heat_from_wall", "work_by_piston"}
+"""Terms of the energy budget that every file has; others are left out where they are zero in all frames."""
 
 
 def open_faces(parcel: Parcel) -> Array:
@@ -41,7 +44,7 @@ def open_faces(parcel: Parcel) -> Array:
 
 
 class Air:
-    """The thermometer, the barometer and the energy ledger of the whole box.
+    """The thermometer, the barometer and the energy budget of the whole box.
 
     Parameters
     ----------
@@ -61,13 +64,12 @@ class Air:
         self._kT.append(temperature(parcel, snapshot))
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Read the barometer and the ledger."""
+        """Read the barometer and the energy budget."""
         area = open_faces(parcel)
         lasted = parcel.time - self._time
         impulse = parcel.wall_impulse - self._impulse
         with np.errstate(invalid="ignore", divide="ignore"):
             wall_pressure = np.where(area > 0.0, impulse / (area * lasted), np.nan)
-        kinetic, rotational, potential = parcel.energy()
         chosen = self._barometer
         row: dict[str, Any] = {
             "air_temperature": float(np.mean(self._kT)),
@@ -75,15 +77,9 @@ class Air:
             if area[chosen].any()
             else math.nan,
             "wall_pressure": wall_pressure,
-            "kinetic_energy": kinetic,
-            "rotational_energy": rotational,
-            "potential_energy": potential,
-            "heat_from_wall": parcel.wall_heat,
-            "work_by_piston": parcel.work,
-            "work_by_gravity": parcel.gravity_work,
+            **parcel.budget(),
             "gravity": parcel.gravity,
             "ledger_residual": parcel.ledger(),
-            "numerical_heat": parcel.numerical_heat,
             "collision_count": parcel.contacts,
             "wall_hit_count": int(parcel.wall_hits.sum()),
             "wall_temperature": parcel.wall_kT(),
@@ -99,21 +95,16 @@ class Air:
             "air_temperature": scale.temperature,
             "air_pressure": scale.pressure,
             "wall_pressure": scale.pressure,
-            "kinetic_energy": scale.total_energy,
-            "rotational_energy": scale.total_energy,
-            "potential_energy": scale.total_energy,
-            "heat_from_wall": scale.total_energy,
-            "work_by_piston": scale.total_energy,
-            "work_by_gravity": scale.total_energy,
+            **dict.fromkeys([*STORES, *GIVEN], scale.total_energy),
             "gravity": scale.acceleration,
-            "numerical_heat": scale.total_energy,
             "wall_temperature": scale.temperature,
         }
         if not self._rows:
             return Readings()
         columns = {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
-        if not columns["numerical_heat"].any():  # most ways of advancing make none
-            del columns["numerical_heat"]
-        if not columns["work_by_gravity"].any():  # gravity changes during the run in few boxes only
-            del columns["work_by_gravity"], columns["gravity"]
+        for name in {*STORES, *GIVEN} - _ALWAYS:
+            if not columns[name].any():
+                del columns[name]
+        if "work_by_gravity" not in columns:  # gravity changes during the run in few boxes only
+            del columns["gravity"]
         return Readings(columns)

@@ -64,7 +64,7 @@ def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:
 
 
 class Clusters:
-    """The largest drop, the free vapour, the energy of attraction, the heat of the bath, the pressure inside.
+    """The largest drop, the free vapour, the energy of attraction, and the pressure inside.
 
     The pressure is the sum of the kinetic part and the virial part, :math:`p = n k T + W / 3 V`; it needs no wall.
 
@@ -99,8 +99,6 @@ class Clusters:
                 "drop_count": float(drop.max(initial=-1) + 1),
                 "attraction_energy": parcel.well_energy,
                 "molecular_energy": sum(parcel.energy()),
-                "heat_from_bath": parcel.bath_heat,
-                "work_by_attraction": parcel.attraction_work,
                 "virial_pressure": (motion + (virial - self._virial) / (3.0 * lasted)) / parcel.volume,
                 "well_count": float(parcel.number_of_wells),
             }
@@ -113,7 +111,7 @@ class Clusters:
         """Return the series; see `Instrument`."""
         if not self._rows:
             return Readings()
-        energies = ("attraction_energy", "molecular_energy", "heat_from_bath", "work_by_attraction")
+        energies = ("attraction_energy", "molecular_energy")
         units = dict.fromkeys(energies, scale.total_energy) | {"virial_pressure": scale.pressure}
         columns = {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
         return Readings({name: values * units.get(name, 1.0) for name, values in columns.items()})

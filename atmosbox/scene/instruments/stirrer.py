@@ -1,4 +1,4 @@
-"""The stirring of a column: its work, and the lapse rate that it produces."""
+"""The lapse rate that stirring produces in a column."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def weighted_slope(x: Array, y: Array, weight: Array) -> float:
 
 
 class Stirrer:
-    """The work of a stirrer since the start, and the lapse rate of the air between two heights, frame by frame.
+    """The lapse rate of stirred air between two heights, frame by frame.
 
     The lapse rate is the slope of the line through the temperatures of the layers, weighted by degrees of freedom.
 
@@ -51,7 +51,7 @@ class Stirrer:
         self._layers = layers
         self._between = low, high
         self._sum = np.zeros((2, layers))
-        self._rows: list[tuple[float, float]] = []
+        self._rows: list[float] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Sum the energy of the disordered motion and the degrees of freedom of each layer."""
@@ -59,19 +59,18 @@ class Stirrer:
         self._sum += energy, freedom
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Compute the slope from the sums of a frame, and read the work."""
+        """Compute the slope from the sums of a frame."""
         edges = np.linspace(0.0, float(parcel.length[2]), self._layers + 1)
         inside = (edges[:-1] >= self._between[0]) & (edges[1:] <= self._between[1])
         energy, freedom = self._sum
         inside &= freedom > 0.0
         middle = 0.5 * (edges[1:] + edges[:-1])[inside]
         slope = weighted_slope(middle, 2.0 * energy[inside] / freedom[inside], freedom[inside])
-        self._rows.append((-slope, parcel.stirring_work))
+        self._rows.append(-slope)
         self._sum = np.zeros((2, self._layers))
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series; see `Instrument`."""
         if not self._rows:
             return Readings()
-        slope, work = np.array(self._rows).T
-        return Readings(lapse_rate=slope * scale.temperature / scale.length, work_by_stirring=work * scale.total_energy)
+        return Readings(lapse_rate=np.array(self._rows) * scale.temperature / scale.length)

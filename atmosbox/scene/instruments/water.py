@@ -65,7 +65,6 @@ class Water:
         self._rains = rains
         self._looks: list[tuple[float, ...]] = []
         self._rows: list[tuple[float, ...]] = []
-        self._energy: list[float] = []
         self._counts: list[tuple[int, int, int]] = []
         self._last = (0.0, 0, 0)
 
@@ -82,7 +81,6 @@ class Water:
         lasted = parcel.time - time
         rates = (parcel.condensed - condensed) / lasted, (parcel.evaporated - evaporated) / lasted
         self._rows.append((*np.mean(self._looks, axis=0), *rates))
-        self._energy.append(parcel.condensed_energy)
         self._counts.append((parcel.vapour, parcel.liquid, parcel.rained))
         self._last = (parcel.time, parcel.condensed, parcel.evaporated)
         self._looks = []
@@ -110,7 +108,6 @@ class Water:
             vapor_molecule_count=counts[:, 0],
             liquid_molecule_count=counts[:, 1],
             rained_molecule_count=counts[:, 2],
-            condensed_energy=np.array(self._energy) * scale.total_energy,
         )
         if self._rains:
             found["rain_mixing_ratio"] = rain * law.WATER_MASS_RATIO
