@@ -62,8 +62,8 @@ def expansion(freedom: int, seed: int) -> float:
 def measured(freedom: int) -> float:
     r"""Return the index that theory expects to be read from an expansion to twice the volume at this speed.
 
-    The entropy :math:`\int D e^2 \tau dt` warms the gas at its volume by :math:`2/f` of that; with x = V / V_0 and times
-    in mean free times at the start, of which n pass, e = 1 / n x and :math:`\tau = x^{(\gamma + 1) / 2}`.
+    The entropy :math:`\int D e^2 \tau dt` warms the gas at its volume by :math:`2/f` of that; with x = V / V_0 and
+    times in mean free times at the start, of which n pass, e = 1 / n x and :math:`\tau = x^{(\gamma + 1) / 2}`.
     """
     index = float(theory.adiabatic_index(freedom))
     power = 0.5 * (index - 1.0)

@@ -41,7 +41,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
         Label of the adiabat.
     """
     cloud = ascent.base > 1.02 * ascent.top_pressure
-    base = (Line("adiabat_temperature", "cloud_base_theory", "condensation level", "reference"),) if cloud else ()
+    base = (Line("adiabat_temperature", "cloud_base_theory", "cloud base, theory", "reference"),) if cloud else ()
     return (
         atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"),
         Panel(
