@@ -37,6 +37,9 @@ from atmosbox.trade import tradeoff  # noqa: E402
 from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
 
 TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
+CURVES = set(PROFILES) - {"parcel_temperature"}
+"""Curves that the table leaves out. That of a parcel is compared with the textbook's adiabat, and tells what a fast
+ascent costs; the theory of its headlines includes that."""
 FEWEST = 4
 """Least number of runs of a way in the table; the scatter of fewer says little."""
 
@@ -52,7 +55,7 @@ def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
 
     The second result is the processor time of the engine in the default run [s].
     """
-    names = [name for name in dataset.quantity.values if name not in PROFILES]
+    names = [name for name in dataset.quantity.values if name not in CURVES]
     found: dict[str, dict[str, Any]] = {}
     for rung in range(dataset.sizes["rung"]):
         one = dataset.isel(rung=rung)
@@ -110,7 +113,7 @@ def entry_of(dataset: Any) -> tuple[str, dict[str, Any]]:
     made = parameters(dataset)
     scene = str(made["scene"])
     module = scenarios.load(scene)
-    names = [str(name) for name in dataset.quantity.values if name not in PROFILES]
+    names = [str(name) for name in dataset.quantity.values if name not in CURVES]
     about = dataset.sel(quantity=names)
     measured_ways, seconds = ways(dataset, module)
     return scene, {

@@ -62,7 +62,6 @@ PARTS = 36
 """Number of equal parts of the logarithmic axis of time in which curves are averaged."""
 HOTTEST = 647.0
 """Temperature above which there is no saturation; a pool of one molecule may have it for a moment [K]."""
-LATE = "the piston moves a little late"
 FEW = 100
 """Number of molecules that come or go below which the errors are those of random events, and not from blocks."""
 
@@ -240,7 +239,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
     rest, until = start.rest, settings.si.duration / start.scale.time
-    lost, walk = start.loss(until), start.walk(until)
+    walk = start.walk(until)
     steep = start.latent / rest.temperature
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
     memory = start.memory / settings.si.duration * FRAMES
@@ -254,7 +253,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found = block_average(late[name].values, BLOCKS, memory)
         error = max(float(found.standard_error), chance if met < FEW else 0.0)
         value, error = float(found.mean), math.hypot(error, walk * heated)
-        return Headline(f"mean_{name}", value, error, expected, lost * heated, LATE, unit, shown, label)
+        return Headline(f"mean_{name}", value, error, expected, 0.0, CHANCE_ALONE, unit, shown, label)
 
     scatter = math.sqrt(2.0 * rest.variance * start.exchange * start.scale.time / lasted)
     scatter *= settings.si.pressure / (start.air + rest.vapor)
@@ -265,16 +264,14 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     e, heated = rest.vapor_pressure, steep * rest.vapor_pressure
     found += [headline("water_vapor_partial_pressure", e, heated, scatter, "Pa", "hPa", "vapour pressure")]
     if found[-1].value > 0.0:
-        found.append(_saturation(late, found[-1], start, 0.0 if wet else lost, scatter if met < FEW else 0.0, memory))
+        found.append(_saturation(late, found[-1], start, scatter if met < FEW else 0.0, memory))
     for name in ("condensation", "evaporation"):
         alone = math.sqrt(met) / lasted
         found.append(headline(f"{name}_rate", rate, steep * rate, alone, "s-1", "ns-1", name))
     return (*found, *energy_of_those_that_leave(dataset, start, FEW))
 
 
-def _saturation(
-    late: "xr.Dataset", vapour: Headline, start: AirOverPool, lost: float, chance: float, memory: float
-) -> Headline:
+def _saturation(late: "xr.Dataset", vapour: Headline, start: AirOverPool, chance: float, memory: float) -> Headline:
     """Return vapour pressure over saturation at the temperature of the pool, or of the air if the pool is dry.
 
     Both are averaged first: the mean of their quotient would be another number, because their fluctuations are
@@ -288,10 +285,8 @@ def _saturation(
     expected = rest.vapor_pressure / float(law.saturation_vapor_pressure(rest.temperature))
     together = late.water_vapor_partial_pressure.values / vapour.value - steep * warm
     error = share * max(float(block_average(together, BLOCKS, memory).standard_error), chance / vapour.value)
-    tolerance = lost * steep * expected
-    reason = CHANCE_ALONE if wet else LATE
     label = "vapour pressure / saturation"
-    return Headline("final_humidity", share, error, expected, tolerance, reason, "1", "percent", label)
+    return Headline("final_humidity", share, error, expected, 0.0, CHANCE_ALONE, "1", "percent", label)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

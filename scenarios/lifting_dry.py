@@ -14,6 +14,7 @@ too warm: by about 155 K divided by the length of the ascent in mean free times,
 """
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,6 +49,7 @@ title = "Lifting dry air"
 level = "first year"
 minutes = 15
 FRAMES = 40
+_THEORY = "theory is the adiabat, plus the warming by the finite speed, minus the cooling by the volume of the spheres"
 _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parcel_temperature"), -1.0)
 ladder = (
     Series("exact", "ascent", (50, 100, 200, 400, 800, 1600), order=_SLOW),
@@ -91,7 +93,7 @@ def _ascent(settings: Settings) -> law.Ascent:
     freedom = 5 if settings.rotation else 3
     _, density, sides, _ = _start(settings)
     height = float(sides[2]) / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-    return law.Ascent(tuple(_route(settings).tolist()), settings.ascent, height, freedom, CLOSING)
+    return law.Ascent(tuple(_route(settings).tolist()), settings.ascent, height, freedom)
 
 
 def _top(settings: Settings) -> float:
@@ -151,18 +153,25 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         seed=settings.seed,
         driver=driver,
     )
-    warmth = environment.adiabat(settings.si.top_pressure) * _ascent(settings).finite_speed(settings.si.top_pressure)
+    ascent, crowding = _ascent(settings), excess * density
+
+    def scatter(outside: np.ndarray) -> np.ndarray:
+        way = replace(ascent, route=(settings.si.pressure, *outside), length=settings.ascent * len(outside) / FRAMES)
+        return way.scatter(n, crowding)[1:]
+
+    top = settings.si.top_pressure
+    warmth = environment.adiabat(top) * ascent.finite_speed(top)
     return Setup(
         parcel,
         scale,
         duration,
         FRAMES,
-        (Air(), Lift(driver, environment)),
+        (Air(), Lift(driver, environment, scatter)),
         facts={
             **parcel_facts(scale, sides),
             "gamma": "7/5" if settings.rotation else "5/3",
             "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
-            "error by the finite speed": f"{warmth:.2g} K at the top",
+            "finite speed": f"theory is {warmth:.2g} K above the adiabat at the top",
         },
         knobs=(altitude(parcel, driver, lambda share: environment.height(share * duration * scale.time)),),
         ends=True,
@@ -177,68 +186,52 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the temperatures along the ascent and the lapse rate."""
+    """Return the temperatures along the ascent and the lapse rate; theory is the adiabat with its finite-rate error."""
     si = settings.si
-    freedom = 5 if settings.rotation else 3
     pressure = dataset.parcel_pressure.values
-    temperature = dataset.parcel_temperature.values
-    misfit = temperature - dataset.adiabat_temperature.values
-    error = dataset.parcel_temperature_se.values
     order = np.argsort(pressure)
-    spheres = 0.0 if used(dataset).ideal else 1.0
-    ascent, density = _ascent(settings), _start(settings)[1]
-    reason = "the ascent is not infinitely slow, and spheres have volume"
-    found = []
-    for level in (100.0 * shown for shown in _levels(settings)):
-        if pressure.min() > 1.01 * level:
-            continue
-        expected = float(law.dry_adiabat_temperature(level, si.temperature, si.pressure, freedom))
-        found.append(
-            Headline(
-                f"temperature_at_{level / 100.0:.0f}_hpa",
-                expected + float(np.interp(level, pressure[order], misfit[order])),
-                float(np.interp(level, pressure[order], error[order])),
-                expected,
-                expected * (ascent.finite_speed(level) + spheres * ascent.room(level, density)),
-                reason,
-                "K",
-                "degC",
-                f"temperature at {level / 100.0:.0f} hPa",
-            )
+    warmer = (dataset.parcel_temperature.values - dataset.adiabat_temperature.values)[order]
+    error = dataset.parcel_temperature_se.values[order]
+    freedom, density = 5 if settings.rotation else 3, _start(settings)[1]
+    ascent, spheres = _ascent(settings), 0.0 if used(dataset).ideal else 1.0
+
+    def at(level: float) -> tuple[float, float, float]:
+        """Return the temperature measured where the parcel has a pressure [Pa], its error, and that of theory [K]."""
+        adiabat = float(law.dry_adiabat_temperature(level, si.temperature, si.pressure, freedom))
+        known = adiabat * (ascent.finite_speed(level) - spheres * ascent.room(level, density))
+        found, chance = (float(np.interp(level, pressure[order], each)) for each in (warmer, error))
+        return adiabat + found, chance, adiabat + known
+
+    reached = [level for level in _levels(settings) if pressure.min() <= 101.0 * level]
+    found = [
+        Headline(
+            f"temperature_at_{level:.0f}_hpa",
+            *at(100.0 * level),
+            0.0,
+            _THEORY,
+            "K",
+            "degC",
+            f"temperature at {level:.0f} hPa",
         )
-    height = dataset.parcel_height.values
-    if height[-1] >= 1000.0:
-        first = float(np.interp(1000.0, height, temperature))
-        outside = float(law.environment_pressure(1000.0, si.temperature, si.pressure, si.lapse_rate))
-        ideal = float(law.dry_adiabat_temperature(outside, si.temperature, si.pressure, freedom))
+        for level in reached
+    ]
+    if dataset.parcel_height.values[-1] >= 1000.0:
+        first = float(law.environment_pressure(1000.0, si.temperature, si.pressure, si.lapse_rate))
+        measured, chance, expected = at(first)
         found.append(
             Headline(
                 "lapse_rate_of_the_first_kilometre",
-                (si.temperature - first) / 1000.0,
-                _chance_at_height(1000.0, height, error, ascent) / 1000.0,
-                (si.temperature - ideal) / 1000.0,
-                ideal * (ascent.lateness(outside) + spheres * ascent.room(outside, density)) / 1000.0,
-                reason,
+                (si.temperature - measured) / 1000.0,
+                chance / 1000.0,
+                (si.temperature - expected) / 1000.0,
+                0.0,
+                _THEORY,
                 "K m-1",
                 "K km-1",
                 "lapse rate of the first kilometre",
             )
         )
     return tuple(found)
-
-
-def _chance_at_height(level: float, height: np.ndarray, error: np.ndarray, ascent: law.Ascent) -> float:
-    """Return the standard error of the temperature at a height [K], from its error at a pressure, by frames.
-
-    A random gain of heat within the time in which the piston closes a gap in pressure still shows in the pressure of
-    the parcel, and counts 2/f times more at the pressure of the environment: see `theory.Ascent.lateness`. Without this
-    term the error was 1.4 times too small in 60 ascents of 150 mean free times; with it, the ratio was 1.00.
-    """
-    frames = np.arange(1.0, len(height) + 1.0)
-    now = float(np.interp(level, height, frames))
-    before = now - ascent.closing / ascent.length * FRAMES
-    whole, older = np.interp([now, before], np.concatenate([[0.0], frames]), np.concatenate([[0.0], error**2]))
-    return float(np.sqrt(older + (1.0 + 2.0 / ascent.freedom) ** 2 * (whole - older)))
 
 
 def _levels(settings: Settings) -> list[float]:

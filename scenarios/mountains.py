@@ -34,6 +34,7 @@ from atmosbox.scene.ascent import (
     rise,
     temperature_covariance,
 )
+from atmosbox.scene.ascent.display import THEORY
 from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.panels import over_time
 
@@ -155,18 +156,16 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     outside = dataset.environment_pressure.values
     chance = temperature_covariance(along_frames(ascent, outside, FRAMES, SAMPLES, ideal=ideal), SAMPLES)[late, late]
     rains = "rain_mixing_ratio" in dataset
-    known = finite_size.drift(ascent, ideal=ideal)
     more = finite_size.rained(ascent) if rains else path
-    warmer = float(known.warmer[-1]) + max(float(more.temperature[-1]) - arrival, 0.0)
+    known = float(more.temperature[-1]) - arrival + float(finite_size.drift(ascent, ideal=ideal).warmer[-1])
     found = [
         Headline(
             "arrival_temperature",
             arrival + float(misfit[late].mean()),
             arrival * math.sqrt(chance.mean()),
-            arrival if finite_size.comparable(ascent) else None,
-            max(warmer, float(known.colder[-1])),
-            "the way is not infinitely slow, some molecules are clustered in clear air, and a cloud that fluctuates "
-            "rains more",
+            arrival + known if finite_size.comparable(ascent) else None,
+            0.0,
+            THEORY,
             "K",
             "degC",
             "temperature in the plain beyond",
@@ -178,9 +177,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 "rain",
                 float(dataset.rain_mixing_ratio[-1]),
                 finite_size.rain_scatter(ascent),
-                float(path.rain[-1]) if finite_size.comparable(ascent) else None,
-                abs(float(more.rain[-1]) - float(path.rain[-1])),
-                "the liquid of so few molecules scatters, and a surplus rains",
+                float(more.rain[-1]) if finite_size.comparable(ascent) else None,
+                0.0,
+                "theory includes that the liquid of so few molecules scatters, and a surplus rains",
                 "kg kg-1",
                 "g kg-1",
                 "rain per dry air",

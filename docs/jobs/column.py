@@ -104,7 +104,6 @@ def hydrostatic(found: Findings) -> None:
             float(counted.mean[i] / share),
             float(counted.standard_error[i] / share),
             1.0,
-            tolerance=0.003,
         )
     for i in (1, 8, 14):
         found.agree(

@@ -201,9 +201,7 @@ def tunnelling(found: Findings) -> None:
         for engine, deltas in lengths.items():
             points[engine] = [contacts_seen(f"{engine}:delta={delta:g}", delta, 4000.0) for delta in deltas]
             for delta, (share, error) in zip(deltas, points[engine], strict=True):
-                found.agree(
-                    f"{engine}, δ = {delta:g}", share, error, seen_share(delta), tolerance=0.01 * seen_share(delta)
-                )
+                found.agree(f"{engine}, δ = {delta:g}", share, error, seen_share(delta))
     delta = np.geomspace(0.02, 50.0, 300)
     with axes_of(1, (7.0, 4.8)) as (drawing, (axis,)):
         axis.plot(delta, [seen_share(each) for each in delta], color="#1a1a1a", label="law for all steps")

@@ -237,6 +237,4 @@ def unlike_molecules(found: Findings) -> None:
         gas = cube(sigma.size, packing, 9, diameter=sigma, mass=mass)
         contacts_pass(gas, 1e5)
         mean, error = block_average(counted_and_expected(gas, [first, ~first], 1e6))
-        found.agree(
-            f"contacts over those expected, {what}", float(mean), float(error), 1.0, tolerance=0.005, limit=0.01
-        )
+        found.agree(f"contacts over those expected, {what}", float(mean), float(error), 1.0, limit=0.01)

@@ -57,7 +57,7 @@ def rising_cloud(found: Findings) -> None:
     pseudo = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water, 0.0)
     lost = float(pseudo.temperature[0]) - end
     known = finite_size.drift(ascent, ideal=False)
-    hurry, lag = float((known.rate + known.flow).max()), float(known.lag.max())
+    hurry, lag = float(known.rate.max()), float(known.lag.max())
     clusters = float(known.clusters[np.argmin(np.abs(known.pressure - base))])
     nuclei = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water)
     faces = float(np.prod(setup.parcel.length[:2])) * settings.area * (setup.scale.length * 1e9) ** 2

@@ -100,8 +100,8 @@ def test_a_cloud_that_carries_its_water_has_half_the_energy_of_one_that_does_not
 def test_a_stable_sounding_has_no_energy_and_the_word_for_it(tmp_path):
     path = csv(tmp_path / "stable.csv", STABLE, [t - 3.0 for t in STABLE])
     found = outcome(sounding=path)
-    assert headline(found, "cape").theory == 0.0
     # few molecules may be buoyant for a moment at the ground, where both temperatures are the same
+    assert 0.0 <= headline(found, "cape").theory < 5.0
     assert 0.0 <= headline(found, "cape").value < 5.0
     assert headline(found, "lfc") is None
     assert runner.card(runner.prepare(SCENE, {"sounding": path})).facts[-1] == ("verdict", "stable")

@@ -1,15 +1,12 @@
 r"""Entropy that a parcel gains because its ascent is not infinitely slow, and how far the gain scatters.
 
-An infinitely slow parcel keeps its entropy S. Four processes change S; rates are per mean free time at the start, S is
+An infinitely slow parcel keeps its entropy S. Three processes change S; rates are per mean free time at the start, S is
 that of the whole parcel, in k, and e is the rate of expansion.
 
 * **Friction**: :math:`D e^2 \tau N`, with D as in `atmosbox.theory.DISSIPATION`. A molecule carries momentum of the
   flow until it collides or, sooner, hits a droplet.
 * **Condensation**: the fluxes :math:`\dot x` of molecules and heat into the liquid need forces :math:`L^{-1} \dot x`,
   and produce the entropy :math:`\dot x^T L^{-1} \dot x`.
-* **The piston** yields when the pressure happens to be high, within the time :math:`t_c` in which it closes a gap. So
-  it extracts work from fluctuations that would otherwise decay by themselves: :math:`-N \langle(\delta \ln p)^2\rangle
-  / \gamma t_c`.
 * **Droplets** flow with the air, :math:`v_z = e z`, and molecules that hit them push them up and down. The mean work of
   these pushes is zero; its mean square per hit is :math:`\tfrac89 m e^2 h^2 / kT`, that is :math:`e^2 \langle z^2
   \rangle = e^2 h^2 / 3` times the mean square :math:`\tfrac83 m kT` of a push. This is the largest source of scatter:
@@ -26,9 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox import theory as law
 from atmosbox.scene.ascent.near_equilibrium import Cloud
-from atmosbox.scene.piston import CLOSING
 
 __all__ = ["Gain", "entropy_gain", "gathered"]
 
@@ -46,8 +41,6 @@ class Gain(NamedTuple):
 
     friction: Array
     condensing: Array
-    piston: Array
-    """Negative: the entropy that the piston takes away."""
     variance: Array
     """Rate at which the variance of the entropy grows."""
 
@@ -60,10 +53,8 @@ def entropy_gain(cloud: Cloud) -> Gain:
     friction = (shear + _ROTATION / (1.0 + 2.0 * often)) * e * e * cloud.free_time * number
     change = cloud.change
     condensing = np.einsum("ti,tij,tj->t", change, np.linalg.inv(cloud.yields), change)
-    closing = float(law.adiabatic_index(5)) * CLOSING
-    unsteady = cloud.pressure_scatter
-    jolts = 8.0 / 9.0 * (e * e + unsteady / closing**2) * cloud.height**2 * cloud.hits
-    return Gain(friction, condensing, -number * unsteady / closing, 2.0 * (friction + condensing) + jolts)
+    pushes = 8.0 / 9.0 * (e * cloud.height) ** 2 * cloud.hits
+    return Gain(friction, condensing, 2.0 * (friction + condensing) + pushes)
 
 
 def gathered(rate: Array, moment: Array) -> Array:

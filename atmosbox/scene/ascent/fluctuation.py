@@ -70,7 +70,7 @@ def _of_means(covariance: Array, samples: int) -> Array:
 def _covariance(cloud: Cloud, seen: Array, cloudy: Array, clear: Array, samples: int) -> Array:
     """Return the covariance of frame means: of x with the weights ``seen``, and of S and R in cloud and clear air."""
     root = np.linalg.cholesky(cloud.resists)
-    rate, mode = np.linalg.eigh(np.einsum("tji,tjk,tkl->til", root, cloud.forgets, root))
+    rate, mode = np.linalg.eigh(np.einsum("tji,tjk,tkl->til", root, cloud.yields, root))
     size = np.einsum("tji,tj->ti", mode, np.linalg.solve(root, seen[:, :, None])[:, :, 0])
     walked = walk(cloud)
     found = walked.shown(cloudy + walked.clear[:, None] * (clear - cloudy))

@@ -106,8 +106,7 @@ def rise(
                 if ascent.rains
                 else {}
             ),
-            "error by the finite speed": f"up to {float((known.rate + known.flow).max()):.2g} K too warm, "
-            f"{float(known.lag.max()):.2g} K too cold",
+            "known errors": f"theory is {known.warmer.min():+.2g} to {known.warmer.max():+.2g} K from the adiabat",
         },
         knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
         ends=True,
