@@ -202,7 +202,7 @@ def random_positions(
             raise _too_dense(n, sides, sigma, planar)
     if n == 0 or not apart:
         rng.random(1)
-        return spheres.low + RandomNumbers(0).random((n, 3)) * (spheres.high - spheres.low)
+        return np.asarray(spheres.low + RandomNumbers(0).random((n, 3)) * (spheres.high - spheres.low))
     thinned = float(scale_height) if scale_height is not None and math.isfinite(scale_height) else 0.0
     # a single number begins a series of its own: how many places are tried depends on the molecules
     given = spheres, bins_of(spheres), thinned, (rng.random(1) * 2.0**53).astype(np.uint64)
