@@ -16,9 +16,11 @@ from atmosbox.engine.core.random import RandomNumbers, Source, uniform
 from atmosbox.engine.core.refusal import PackingError, RefusedError
 from atmosbox.engine.start.overlap import bins_of, enter, is_free, leave, push, spheres_of
 
-__all__ = ["crowd", "random_positions", "scatter"]
+__all__ = ["SERIES", "crowd", "random_positions", "scatter"]
 
 Array = NDArray[np.float64]
+SERIES = float(1 << 53)
+"""Number of series of random numbers with which molecules may be placed (not as a power: C libraries round powers)."""
 _TRIES = 500
 """How many places are drawn for a molecule before the gas is called dense; where it fills 0.3, 1 in 130 is free."""
 _ROUNDS = 800
@@ -202,10 +204,10 @@ def random_positions(
             raise _too_dense(n, sides, sigma, planar)
     if n == 0 or not apart:
         rng.random(1)
-        return spheres.low + RandomNumbers(0).random((n, 3)) * (spheres.high - spheres.low)
+        return np.asarray(spheres.low + RandomNumbers(0).random((n, 3)) * (spheres.high - spheres.low))
     thinned = float(scale_height) if scale_height is not None and math.isfinite(scale_height) else 0.0
     # a single number begins a series of its own: how many places are tried depends on the molecules
-    given = spheres, bins_of(spheres), thinned, (rng.random(1) * 2.0**53).astype(np.uint64)
+    given = spheres, bins_of(spheres), thinned, (rng.random(1) * SERIES).astype(np.uint64)
     if not (scatter(*given) or crowd(*given)):
         raise _too_dense(n, sides, sigma, planar)
     return np.asarray(spheres.x)

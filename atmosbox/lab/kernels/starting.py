@@ -18,7 +18,8 @@ from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.rows import LONGEST
-from atmosbox.engine.start import clearing, scatter
+from atmosbox.engine.start.clearing import clear
+from atmosbox.engine.start.scatter import SERIES, crowd, scatter
 from atmosbox.lab.kernels.laying_out import write_column
 from atmosbox.lab.kernels.moist_passing import moist_passing
 from atmosbox.lab.kernels.pairwise import pairwise_sum
@@ -34,9 +35,7 @@ _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
     np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & ((1 << 64) - 1)) for use in (RUN, START)
 )
-_scatter, _crowd, _clear = (
-    kernel(getattr(each, "py_func", each)) for each in (scatter.scatter, scatter.crowd, clearing.clear)
-)
+_scatter, _crowd, _clear = (kernel(getattr(each, "py_func", each)) for each in (scatter, crowd, clear))
 
 
 class Cleared(NamedTuple):
@@ -150,7 +149,7 @@ def _place(seed, start):
     _skip(seed, start.place, state)
     first = uniform(state)
     after = state[0]
-    state[0] = np.uint64(first * 2.0**53)
+    state[0] = np.uint64(first * SERIES)
     given = start.spheres, start.bins, start.scale_height, state
     possible = _scatter(*given) or _crowd(*given)
     state[0] = after
