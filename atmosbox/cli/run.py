@@ -51,7 +51,9 @@ def run(
     seed: Seed = None,
     engine: Engine = None,
     accuracy: Accuracy = None,
-    out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder]")] = None,
+    out: Annotated[
+        str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder, or SCENE-2.nc if that is there]")
+    ] = None,
     force: Force = False,
     save_molecules: Annotated[
         bool | None,
