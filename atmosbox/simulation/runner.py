@@ -234,7 +234,7 @@ def run(
     progress: Progress | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool | None = False,
+    save_molecules: bool | None = None,
     **settings: Any,
 ) -> xr.Dataset:
     """Run a scenario and return its measurements.
