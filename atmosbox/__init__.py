@@ -8,7 +8,7 @@ other quantities with error bars, and compares them with theory::
     ab.scenes()                                     # the scenes; ab.scenes("lifting-dry"): the settings of one
     run = ab.run("lifting-dry", molecules=2000)     # an xarray.Dataset that prints its main results first
     ab.plot(run)                                    # its figure
-    ab.show(ab.run("temperature", save_molecules=True))      # its molecules, in a notebook or in the browser
+    ab.show(ab.run("temperature"))                  # its molecules, in a notebook or in the browser
     ab.compare(run, ab.run("lifting-dry", temperature=30))   # two runs side by side
     ab.sweep("condensation", {"temperature": [0, 10, 20]})   # how the results depend on a setting
     ab.open("run.nc")                               # a saved run

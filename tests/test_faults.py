@@ -65,7 +65,7 @@ def usual(tmp_path_factory):
     folder = tmp_path_factory.mktemp("usual")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-        prepared = runner.prepare(SCENE, {"duration": 2.0})
+        prepared = runner.prepare(SCENE, {"duration": 2.0}, save_molecules=None)
         runner.execute(prepared, checkpoint=Checkpoint(folder / "x.nc"), command=" ".join(["atmosbox", *SHORT]))
     return folder
 
@@ -148,7 +148,7 @@ def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, m
     monkeypatch.setattr(runner, "_BREATH", 0.0)
     draw, now = random.Random(3), time.time()
     monkeypatch.setattr(time, "time", lambda: now + draw.uniform(-1e8, 1e8))
-    prepared = runner.prepare(SCENE, {"duration": 2.0})
+    prepared = runner.prepare(SCENE, {"duration": 2.0}, save_molecules=None)
     shares = []
     checkpoint = Checkpoint(tmp_path / "x.nc", every_seconds=0.0)
     with bars.progress(SCENE, quiet=False) as show:
@@ -168,7 +168,7 @@ def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, m
 @pytest.mark.parametrize("jump", ["-3y", "+3y"])
 def test_a_computer_with_a_wrong_clock_goes_on_with_a_run(usual, tmp_path, monkeypatch, jump):
     """A run that was begun in another year continues, and its file is the same."""
-    prepared = runner.prepare(SCENE, {"duration": 2.0})
+    prepared = runner.prepare(SCENE, {"duration": 2.0}, save_molecules=None)
 
     def half(share, word):
         if word == "running" and share > 0.5:

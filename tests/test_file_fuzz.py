@@ -45,7 +45,7 @@ def files(tmp_path_factory):
         patch.setattr(runner, "_BREATH", 0.0)
         cut(patch, {"temperature": (60, 10), "elastic-collisions": (60, 20)})
         runner.run("temperature", molecules=50, duration="0.1 ns", save_molecules=True, out="molecules.nc")
-        runner.run("lifting-dry", molecules=50, ascent=30.0, out="lift.nc")
+        runner.run("lifting-dry", molecules=50, ascent=30.0, save_molecules=False, out="lift.nc")
         prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
         with pytest.raises(runner.Interrupted):
             runner.execute(prepared, checkpoint=Checkpoint("half.nc"), progress=stop)

@@ -14,7 +14,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from atmosbox.errors import FileError, SettingError
+from atmosbox.errors import FileError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import restart, runner
@@ -176,7 +176,7 @@ def test_the_command_killed_at_a_random_moment_goes_on_bit_for_bit(tmp_path):
     """kill -9, like switching off the computer: the run continues from the last saved state."""
     words = ["run", "temperature", "--set", "molecules=5000", "--quiet", "--out", "x.nc"]
     whole = tmp_path / "whole.nc"
-    prepared = runner.prepare("temperature", {"molecules": 5000})
+    prepared = runner.prepare("temperature", {"molecules": 5000}, save_molecules=None)
     runner.execute(prepared, checkpoint=Checkpoint(whole), command=" ".join(["atmosbox", *words]))
     killed = tmp_path / "killed"
     assert killed_again_and_again(words, killed, 1, random.Random(17), "-c", OFTEN)
@@ -251,13 +251,12 @@ def test_a_run_that_goes_on_keeps_its_settings(part):
     for words in (["--seed", "3"], ["--set", "duration=3"], ["--engine", "dsmc"], ["--save-molecules"]):
         assert "cannot change a run that goes on" in refused("run", "--resume", part, *words)
     assert "not for temperature" in refused("run", "temperature", "--resume", part)
-    assert "needs a run that is there" in refused("run", "temperature", "--extend", "2")
     assert read(part).attrs["atmosbox_status"] == "interrupted"
 
 
 def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
     runner.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
-    assert "--keep-state" in refused("run", "--resume", tmp_path / "done.nc")
+    assert "done.nc is finished: type atmosbox run --from" in refused("run", "--resume", tmp_path / "done.nc")
     with netCDF4.Dataset(part) as file:
         whole = np.asarray(file.variables["atmosbox_state"][:])
         attributes = {name: file.getncattr(name) for name in file.ncattrs() if name != "atmosbox_headlines"}
@@ -326,26 +325,3 @@ def test_a_run_too_short_for_its_headlines_is_kept_nevertheless(tmp_path, monkey
     assert read(checkpoint.part).sizes["elapsed_time"] > 2
     with pytest.raises(np.linalg.LinAlgError):
         runner.execute(prepared)
-
-
-def test_a_finished_run_goes_on_for_longer(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    cut(monkeypatch, {"temperature": (60, 10)})
-    words = ["--set", "molecules=60", "--set", "duration=0.2ns"]
-    assert typed("run", "temperature", *words, "--keep-state", "--out", "x.nc").exit_code == 0
-    assert "give --extend 2" in refused("run", "--resume", "x.nc", "--force")
-    assert typed("run", "--resume", "x.nc", "--extend", "3", "--out", "long.nc").exit_code in (0, 3)
-    short, long = read("x.nc"), read("long.nc")
-    frames = short.sizes["elapsed_time"]
-    assert long.sizes["elapsed_time"] == 3 * frames
-    for name in ("elapsed_time", "air_temperature", "collision_count"):
-        assert long[name].values[:frames].tobytes() == short[name].values.tobytes()
-    assert (np.diff(long.collision_count) >= 0).all()
-    assert long.attrs["history"].count("\n") == 1
-    assert json.loads(long.attrs["atmosbox_parameters"])["longer"] == 3
-
-
-def test_an_ascent_that_has_an_end_is_not_extended(tmp_path):
-    prepared = runner.prepare("lifting-dry", {"molecules": 50, "ascent": 50.0})
-    with pytest.raises(SettingError, match="has an end"):
-        runner.execute(prepared, longer=2)

@@ -43,7 +43,7 @@ def animate(
 ) -> None:
     """Film a run: the molecules in their box, and the graphs of the scene.
 
-    The molecules are in the file if it was run with --save-molecules.
+    The molecules are in the file of a small run, and of any that was made with --save-molecules.
     """
     from atmosbox.file.netcdf import read
 

@@ -34,8 +34,8 @@ def export(
 ) -> None:
     """Write a run for OVITO, VMD or a spreadsheet.
 
-    Molecules are there if the run kept them: atmosbox run SCENE --save-molecules. CSV is written as one file for each
-    dimension: NAME-elapsed_time.csv, NAME-height.csv, and NAME-headlines.csv.
+    Molecules are there if the run kept them, as small runs do, and others with --save-molecules. CSV is written as one
+    file for each dimension: NAME-elapsed_time.csv, NAME-height.csv, and NAME-headlines.csv.
     """
     from atmosbox.file.netcdf import read
     from atmosbox.file.output_path import check_writable, named, write_whole

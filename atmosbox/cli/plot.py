@@ -39,7 +39,7 @@ def plot(
 ) -> None:
     """Draw the figure of a run.
 
-    Its box can be drawn if the run kept its molecules: atmosbox run SCENE --save-molecules.
+    Its box can be drawn if the run kept its molecules, as small runs do, and others with --save-molecules.
     """
     from atmosbox.file.netcdf import read
 

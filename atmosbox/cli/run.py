@@ -52,7 +52,9 @@ def run(
     seed: Seed = None,
     engine: Engine = None,
     accuracy: Accuracy = None,
-    out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder]")] = None,
+    out: Annotated[
+        str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder, or SCENE-2.nc if that is there]")
+    ] = None,
     force: Force = False,
     save_molecules: Annotated[
         bool | None,
@@ -66,12 +68,6 @@ def run(
         str | None,
         typer.Option(metavar="FILE", help="Go on with a run that was stopped or killed, from its NAME.part.nc."),
     ] = None,
-    extend: Annotated[
-        int, typer.Option(metavar="N", min=1, help="With --resume: let the run last N times as long as its scene says.")
-    ] = 1,
-    keep_state: Annotated[
-        bool, typer.Option("--keep-state", help="Keep the last state in the file, so that --extend can go on from it.")
-    ] = False,
     strict: Annotated[
         bool, typer.Option("--strict", help="Refuse a sounding that is doubtful, instead of a warning.")
     ] = False,
@@ -95,8 +91,6 @@ def run(
 
     restart = None
     if resume is None:
-        if extend > 1:
-            raise SettingError("extend", extend, "needs a run that is there", "give --resume FILE with it")
         prepared = checked(gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy))
         default = for_scene(prepared.scene)
     else:
@@ -123,7 +117,7 @@ def run(
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
     try:
-        hint = None if restart is not None or extend > 1 else expected_time(prepared)
+        hint = None if restart is not None else expected_time(prepared)
         words = "" if hint is None else str(hint)
         with prints_to_stderr(), progress(prepared.scene, quiet=quiet, expected=words) as show:
             outcome = runner.execute(
@@ -132,8 +126,6 @@ def run(
                 progress=show,
                 command=typed(ctx),
                 restart=restart,
-                longer=extend,
-                keep_state=keep_state,
                 strict=strict,
             )
     except runner.Interrupted as stop:

@@ -111,7 +111,6 @@ def resume(
     *,
     scene: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,
-    extend: int = 1,
     force: bool = False,
     progress: Show | bool | None = None,
 ) -> RunDataset:
@@ -120,14 +119,11 @@ def resume(
     Parameters
     ----------
     path
-        The file that the run has left, ``NAME.part.nc``, or the file of a finished run that was made with
-        ``atmosbox run --keep-state``.
+        The file that the run has left, ``NAME.part.nc``.
     scene
         The path of the scene, if it is one of your own: atmosbox never runs code that only a data file names.
     out
         File of the finished run; by default the one that the run would have had.
-    extend
-        Factor by which the run lasts longer than its scene says, with frames of the same length.
     force
         Whether a file of that name may be replaced.
     progress
@@ -155,7 +151,7 @@ def resume(
     from atmosbox.simulation.runner import resume as go_on
 
     with in_python(), progress_bar(os.fspath(path), progress) as show:
-        return as_run(go_on(path, scene=scene, out=out, extend=extend, force=force, progress=show))
+        return as_run(go_on(path, scene=scene, out=out, force=force, progress=show))
 
 
 def open(path: str | os.PathLike[str]) -> RunDataset:

@@ -57,8 +57,6 @@ class Restart(NamedTuple):
         The bytes of the arrays.
     attributes
         The global attributes of the file.
-    longer
-        Length of the run, as a multiple of the length that its scene sets.
     """
 
     source: Path
@@ -66,7 +64,6 @@ class Restart(NamedTuple):
     tree: dict[str, Any]
     content: Bytes
     attributes: dict[str, Any]
-    longer: int = 1
 
 
 class UnkeptError(Exception):
@@ -103,7 +100,7 @@ def _sources() -> str:
     return source_digest() if folder is None else folder.name
 
 
-def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer: int = 1) -> xr.Dataset:
+def with_state(dataset: xr.Dataset, recording: Recording, seconds: float) -> xr.Dataset:
     """Return a dataset with the state from which its run continues.
 
     Parameters
@@ -114,8 +111,6 @@ def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer
         The run, between two samples.
     seconds
         The time that the run has taken so far [s].
-    longer
-        Length of the run, as a multiple of the length that its scene sets.
 
     Raises
     ------
@@ -140,7 +135,6 @@ def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer
         "sampled": recording.sampled,
         "busy": recording.busy,
         "seconds": seconds,
-        "longer": longer,
     }
     head = json.dumps({"about": described(recording.prepared), "tree": tree, "arrays": arrays.table}).encode()
     blob = np.frombuffer(len(head).to_bytes(8, "little") + head + b"".join(arrays.pieces), np.uint8)
@@ -161,19 +155,18 @@ def read_state(path: str | Path) -> Restart:
     found = netcdf.read(path)
     content = netcdf.read_state(path)
     if content is None:
-        fix = "type atmosbox run --from with it to begin anew"
+        why = "holds no state of its run, so that it cannot go on"
         if found.attrs.get("atmosbox_status") == "complete":
-            fix = "a run made with --keep-state can go on, so type atmosbox run --keep-state"
-        raise FileError(f"{path} holds no state of its run, so that it cannot go on: {fix}.")
+            why = "is finished"
+        raise FileError(f"{path} {why}: type atmosbox run --from with it to run it again.")
     try:
         size = int.from_bytes(content[:8].tobytes(), "little")
         head = json.loads(content[8 : 8 + size].tobytes())
         tree = {"arrays": head["arrays"], **head["tree"]}
-        longer = int(tree["longer"])
         attributes = {**found.attrs, "history": str(found.attrs["history"])}
-        return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], attributes, longer)
+        return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], attributes)
     except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise FileError(f"The state in {path} is damaged: type atmosbox run --from with it to begin anew.") from error
+        raise FileError(f"The state in {path} is damaged: type atmosbox run --from with it to run it again.") from error
 
 
 def check_alike(restart: Restart, prepared: Prepared) -> None:

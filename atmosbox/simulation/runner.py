@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import time
 import warnings
@@ -11,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import StalledError
-from atmosbox.errors import EngineError, FileError, SettingError, SoundingError
+from atmosbox.errors import EngineError, FileError, SoundingError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
@@ -82,8 +81,6 @@ def execute(
     progress: Progress | None = None,
     command: str = "",
     restart: Restart | None = None,
-    longer: int = 1,
-    keep_state: bool = False,
     strict: bool = False,
 ) -> Outcome:
     """Run a prepared scenario.
@@ -100,10 +97,6 @@ def execute(
         What the user typed, for the file's history.
     restart
         The state from which the run continues, from `atmosbox.simulation.restart.read_state`; None for a new run.
-    longer
-        Length of the run, as a multiple of the length that the scene sets; its frames have the same length.
-    keep_state
-        Whether the finished file holds the last state, so that the run can be continued later.
     strict
         Whether a doubtful sounding is refused, and not only reported in a warning.
 
@@ -129,14 +122,13 @@ def execute(
     """
     if restart is not None:
         check_alike(restart, prepared)
-        longer = max(longer, restart.longer)
     if checkpoint is None:
-        return _execute(prepared, None, progress, command, restart, longer, keep_state, strict)
+        return _execute(prepared, None, progress, command, restart, strict)
     with uninterrupted():
         checkpoint.load_libraries()
     checkpoint.begin()
     try:
-        return _execute(prepared, checkpoint, progress, command, restart, longer, keep_state, strict)
+        return _execute(prepared, checkpoint, progress, command, restart, strict)
     finally:
         checkpoint.release()
 
@@ -147,8 +139,6 @@ def _execute(
     progress: Progress | None,
     command: str,
     restart: Restart | None,
-    longer: int,
-    keep_state: bool,
     strict: bool,
 ) -> Outcome:
     """Run a prepared scenario after its output path has been reserved."""
@@ -156,23 +146,17 @@ def _execute(
     with told(prepared, tell):
         setup = build(prepared)
         setup.parcel.advance(0.0)
-    if longer > 1:
-        if setup.ends:
-            raise SettingError("extend", longer, f"is not for {prepared.scene}, whose run has an end", "leave it out")
-        setup = replace(setup, duration=longer * setup.duration, frames=longer * setup.frames)
     for sentence in setup.doubts:
         if strict:
             raise SoundingError(f"{sentence[:-1]}: correct it, or leave --strict out.")
         if restart is None:
             warnings.warn(sentence, stacklevel=3)
-    recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart, longer))
+    recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
     last = spent = 0.0
     if restart is not None:
         spent = put_back(restart, recording)
         if recording.frames >= setup.frames:
-            raise FileError(
-                f"{restart.source} is finished: give --extend {longer + 1} to let the run go on for longer."
-            )
+            raise FileError(f"{restart.source} is finished: type atmosbox run --from with it to run it again.")
     warned = False
 
     def watch(now: float) -> None:
@@ -192,7 +176,7 @@ def _execute(
     def resumable(dataset: xr.Dataset) -> xr.Dataset:
         nonlocal warned
         try:
-            return with_state(dataset, recording, spent, longer)
+            return with_state(dataset, recording, spent)
         except UnkeptError as error:
             if not warned:
                 warned = True
@@ -219,22 +203,17 @@ def _execute(
         raise Interrupted(partial, getattr(stop, "exit_code", 130)) from None
     if checkpoint is not None:
         with uninterrupted():
-            checkpoint.finish(resumable(done.dataset) if keep_state else done.dataset)
-    if longer == 1:
-        remember_pace(prepared, done.engine_seconds)
+            checkpoint.finish(done.dataset)
+    remember_pace(prepared, done.engine_seconds)
     return done
 
 
-def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart | None, longer: int) -> dict[str, Any]:
+def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart | None) -> dict[str, Any]:
     """Return the global attributes of the file; a resumed run keeps those of its beginning."""
-    from atmosbox.file.provenance import global_attributes, history_line
+    from atmosbox.file.provenance import global_attributes
 
     if restart is not None:
-        kept = {name: value for name, value in restart.attributes.items() if name != "atmosbox_headlines"}
-        if longer > 1:
-            kept["history"] = f"{kept['history']}\n{history_line(command)}"
-            kept["atmosbox_parameters"] = json.dumps(prepared.parameters | {"longer": longer}, allow_nan=False)
-        return kept
+        return {name: value for name, value in restart.attributes.items() if name != "atmosbox_headlines"}
     panels = prepared.module.panels
     return global_attributes(
         prepared.parameters,
@@ -255,7 +234,7 @@ def run(
     progress: Progress | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool | None = False,
+    save_molecules: bool | None = None,
     **settings: Any,
 ) -> xr.Dataset:
     """Run a scenario and return its measurements.
@@ -346,7 +325,6 @@ def resume(
     *,
     scene: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,
-    extend: int = 1,
     force: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -355,13 +333,11 @@ def resume(
     Parameters
     ----------
     path
-        The file that it left, ``NAME.part.nc``, or the file of a finished run, made with ``--keep-state``, to extend.
+        The file that it left, ``NAME.part.nc``.
     scene
         The path of the scene, if it is one of your own.
     out
         Path of the finished run; by default the path that the run was to write.
-    extend
-        Length of the run, as a multiple of the length that its scene sets; its frames have the same length.
     force
         Whether a file may be replaced.
     progress
@@ -383,7 +359,5 @@ def resume(
     restart = read_state(os.fspath(path))
     prepared = prepared_again(restart, scene)
     checkpoint = Checkpoint(whole_path(path) if out is None else out, force=force)
-    command = f"atmosbox.resume({os.fspath(path)!r}, extend={extend})"
-    return execute(
-        prepared, checkpoint=checkpoint, progress=progress, command=command, restart=restart, longer=extend
-    ).dataset
+    command = f"atmosbox.resume({os.fspath(path)!r})"
+    return execute(prepared, checkpoint=checkpoint, progress=progress, command=command, restart=restart).dataset
