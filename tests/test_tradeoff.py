@@ -28,7 +28,16 @@ from atmosbox.plot import save, tradeoff_figure
 from atmosbox.plot.tradeoff_choice import recommended
 from atmosbox.scene.setup import Series
 from atmosbox.simulation.accuracy import choose
-from atmosbox.trade.tradeoff import KeptRuns, Rung, budgeted_runs, measure, rungs, timed_run, warm_engine
+from atmosbox.trade.tradeoff import (
+    KeptRuns,
+    Rung,
+    budgeted_runs,
+    measure,
+    measured_trade,
+    rungs,
+    timed_run,
+    warm_engine,
+)
 from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns
 from atmosbox.trade.tradeoff.measured_trade import _summary
 
@@ -301,6 +310,14 @@ def test_another_experiment_is_not_recommended_however_good():
     perfect = {name: column[name].where(~flat, 0.0) for name in ("bias", "bias_se", "noise")}
     best, _ = recommended(column.assign(engine_seconds=column.engine_seconds.where(~flat, 1e-9), **perfect))
     assert not flat[best]
+
+
+def test_a_budget_that_was_too_short_can_be_given_longer(tmp_path, monkeypatch):
+    monkeypatch.setattr(measured_trade, "compile_within", lambda *_: False)
+    for budget in (2.0, 3.0):
+        with pytest.raises(SettingError, match="leaves nothing measured"):
+            measure("elastic-collisions", budget=budget, out=tmp_path / "x.nc")
+        assert not list(tmp_path.iterdir())
 
 
 def test_where_nothing_is_accurate_enough_the_most_accurate_is_marked():

@@ -137,6 +137,8 @@ def measure(
     trials = [runs.results[own.index(k)] for k in first]
     refused = [runs.left_out[own.index(k)] for k in first]
     if not any(trials):
+        if out is not None:
+            KeptRuns.remove(out)  # otherwise a longer budget would be refused as another tradeoff
         why = next((reason for reason in refused if reason), "no run fits into it")
         raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")
     tell(1.0, "done")
