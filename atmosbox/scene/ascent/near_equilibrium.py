@@ -199,8 +199,8 @@ def cloud_along(
     In clear air the number n of molecules in clusters cannot be negative: it varies less, and G is larger.
 
     **What is a cloud.** Air without a cloud holds the most liquid by chance, called haze here, where it is saturated:
-    n >= 0 then has a probability proportional to :math:`e^{-(n - 1/2)^2 / 2 s^2}`, where :math:`s^2` is the variance of
-    the liquid in a cloud. A cloud is liquid above the mean of this haze plus three of its standard deviations,
+    n >= 0 then has a probability nearly proportional to :math:`e^{-(n - 1/2)^2 / 2 s^2}`, where :math:`s^2` is the
+    variance of the liquid in a cloud. A cloud is liquid above the mean of this haze plus three standard deviations,
 
     .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
               \approx 2.6 \, s .
@@ -229,10 +229,10 @@ def cloud_along(
     >>> round(float(np.sqrt(np.linalg.inv(cloud.resists)[1, 0, 0])))
     12
 
-    Liquid is a cloud if it is more than chance puts together, some 32 molecules there:
+    Liquid is a cloud if it is more than chance puts together, some 31 molecules there:
 
     >>> round(float(cloud.haze[1]))
-    32
+    31
     """
     path = path or ascent.path(pressure, share)
     t, moment = path.temperature, share * ascent.length
@@ -253,9 +253,10 @@ def cloud_along(
         return -np.stack([driven, warms - warmer], axis=1)
 
     free = np.linalg.inv(stiffness(ascent.nuclei + capacity * liquid))[:, 0, 0]
-    mean, variance = _counted(vapour, liquid, humidity, np.maximum(1.0 / free - 1.0 / vapour, 1e-12))
+    warming = np.maximum(1.0 / free - 1.0 / vapour, 1e-12)
+    mean, variance = _counted(vapour, liquid, humidity, warming)
     clustered = mean - liquid
-    haze, scatter = _counted(np.full_like(free, 0.5), np.sqrt(free))
+    haze, scatter = _counted(vapour, np.zeros_like(free), np.ones_like(free), warming)
     liquid_heat = ascent.nuclei + capacity * (liquid + clustered)
     resists = stiffness(liquid_heat)
     resists[:, 0, 0] += np.maximum(1.0 / np.maximum(variance, 1e-9) - 1.0 / free, 0.0)
