@@ -276,7 +276,7 @@ def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
         assert "damaged" in refused("run", "--resume", odd), name
     with netCDF4.Dataset(part, "r+") as file:
         file.delncattr("history")
-    assert "damaged" in refused("run", "--resume", part, "--extend", "2")
+    assert "damaged" in refused("run", "--resume", part)
 
 
 def test_the_state_of_a_scene_of_ones_own_needs_its_path_typed(tmp_path, monkeypatch):

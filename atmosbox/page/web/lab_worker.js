@@ -344,10 +344,8 @@ class Box {
   save() {
     const { rows, every } = this.trace, { units, frames } = this.plan, command = this.command();
     const names = Object.keys(rows[0] ?? {}).filter((name) => name in units);
-    const times = Math.ceil(this.frame / frames); // a run that goes on for longer takes two commands
-    const commands = times > 1 ? [`# ${command} --keep-state --out run.nc`, `# atmosbox run --resume run.nc --extend ${times} --out longer.nc`] : [`# ${command}`];
-    const about = this.turned.length ? [...commands, "# begins like this run; then these changes by hand", ...this.turned]
-      : [...commands, "# repeats this run"];
+    const repeats = this.frame > frames ? `repeats the first ${frames} frames of this run` : "repeats this run";
+    const about = [`# ${command}`, ...this.turned.length ? ["# begins like this run; then these changes by hand", ...this.turned] : [`# ${repeats}`]];
     if (every > 1) about.push(`# every ${every}th frame`);
     const lines = [...about, `# units: ${names.map((name) => `${name} [${units[name]}]`).join(", ")}`, names.join(","),
       ...rows.map((row) => names.map((name) => row[name]).join(","))];
