@@ -136,9 +136,9 @@ def test_a_run_has_the_same_bits_on_any_number_of_threads(name):
 def test_a_short_run_is_the_same_in_two_halves(name):
     options = {key: (value[:20] if isinstance(value, np.ndarray) else value) for key, value in BOXES[name].items()}
     whole, halves = (gas(20, delta=0.05, **options) for _ in range(2))
-    whole.advance(1.0)
-    halves.advance(0.4)
-    halves.advance(1.0)
+    whole.advance(3.0)
+    halves.advance(1.2)
+    halves.advance(3.0)
     assert whole.wall_hits.sum() > 3
     assert state(whole) == state(halves)
     assert whole.ledger() < 1e-12
