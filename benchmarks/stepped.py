@@ -4,9 +4,8 @@
     python benchmarks/stepped.py --against FOLDER --repeats 9
 
 The gas is equal spheres in gravity between two heat baths. Machines are noisy: use the ratio of two engines that take
-turns, the median over many short slices. FOLDER contains a module ``stepped.py`` with ``Sim(N, phi, delta, T, par,
-mgH=..., thermal=...)``, which places N equal spheres itself, for T threads (``par`` tells whether threads are used),
-and advances them by ``go(steps)``. With more than one thread, wall time is measured.
+turns, the median over many short slices. FOLDER contains a module ``stepped.py`` with ``Sim(N, phi, delta, mgH=...,
+thermal=...)``, which places N equal spheres itself, and advances them by ``go(steps)``.
 """
 
 import argparse
@@ -32,7 +31,7 @@ WARM_UP = 70
 HEIGHT = 1.0  # height of the box, in scale heights
 
 
-def column(n: int, phi: float, delta: float, threads: int) -> SteppedParcel:
+def column(n: int, phi: float, delta: float) -> SteppedParcel:
     """Return a column of equal spheres."""
     side = (n * math.pi / 6.0 / phi) ** (1.0 / 3.0)
     rng = np.random.default_rng(1)
@@ -42,42 +41,41 @@ def column(n: int, phi: float, delta: float, threads: int) -> SteppedParcel:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseStepWarning)
         return SteppedParcel(
-            x, v, length=(side,) * 3, walls=walls, gravity=HEIGHT / side, delta=delta, threads=threads
+            x, v, length=(side,) * 3, walls=walls, gravity=HEIGHT / side, delta=delta
         )  # fmt: skip
 
 
-def pace(advance: Callable[[int], Any], steps: int, n: int, clock: Callable[[], float]) -> float:
+def pace(advance: Callable[[int], Any], steps: int, n: int) -> float:
     """Return the molecule-steps per second of one slice."""
-    start = clock()
+    start = time.process_time()
     advance(steps)
-    return steps * n / (clock() - start)
+    return steps * n / (time.process_time() - start)
 
 
-def measure(n: int, phi: float, delta: float, threads: int, repeats: int, other: Any) -> dict[str, Any]:
+def measure(n: int, phi: float, delta: float, repeats: int, other: Any) -> dict[str, Any]:
     """Return the medians of one case."""
-    box = column(n, phi, delta, threads)
+    box = column(n, phi, delta)
 
     def advance(steps: int) -> None:
         box.advance((box.steps + steps) * box.time_step)
 
     advance(WARM_UP)
-    theirs = other.Sim(n, phi, delta, threads, threads > 1, mgH=HEIGHT, thermal=True) if other else None
+    theirs = other.Sim(n, phi, delta, mgH=HEIGHT, thermal=True) if other else None
     if theirs:
         theirs.go(WARM_UP)
     slice_ = max(4, 2_000_000 // n)
-    clock = time.process_time if threads == 1 else time.perf_counter
     paces, others = [], []
     gc.disable()
     for _ in range(repeats):
-        paces.append(pace(advance, slice_, n, clock))
+        paces.append(pace(advance, slice_, n))
         if theirs:
-            others.append(pace(theirs.go, slice_, n, clock))
+            others.append(pace(theirs.go, slice_, n))
     gc.enable()
     result = {
         "packing_fraction": phi,
         "delta": delta,
         "molecules": n,
-        "threads": threads,
+        "threads": 1,
         "molecule_steps_per_second": float(np.median(paces)),
         "bytes_per_molecule": box.memory() / n,
         "contacts_per_molecule_step": box.contacts / (n * box.steps),
@@ -94,7 +92,6 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
     parser.add_argument("--n", type=int, nargs="+", default=[10_000, 100_000, 1_000_000])
     parser.add_argument("--phi", type=float, nargs="+", default=[0.01, 0.1])
     parser.add_argument("--delta", type=float, nargs="+", default=[0.02, 0.1])
-    parser.add_argument("--threads", type=int, nargs="+", default=[1])
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--against", type=Path, help="folder of another engine, to take turns with")
     parser.add_argument("--json", type=Path, help="file for the numbers")
@@ -104,21 +101,20 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
         sys.path.insert(0, str(asked.against))
         sys.modules.pop("stepped", None)
         other = importlib.import_module("stepped")
-    print("| phi | delta | N | threads | million molecule-steps / s | other | ratio | bytes per molecule |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| phi | delta | N | million molecule-steps / s | other | ratio | bytes per molecule |")
+    print("|---|---|---|---|---|---|---|")
     results = []
     for phi in asked.phi:
         for n in asked.n:
             for delta in asked.delta:
-                for threads in asked.threads:
-                    r = measure(n, phi, delta, threads, asked.repeats, other)
-                    results.append(r)
-                    beside = f"{r['other_molecule_steps_per_second'] / 1e6:.1f} | {r['ratio']:.3f}" if other else " | "
-                    print(
-                        f"| {phi:g} | {delta:g} | {n} | {threads} | {r['molecule_steps_per_second'] / 1e6:.1f} "
-                        f"| {beside} | {r['bytes_per_molecule']:.0f} |",
-                        flush=True,
-                    )
+                r = measure(n, phi, delta, asked.repeats, other)
+                results.append(r)
+                beside = f"{r['other_molecule_steps_per_second'] / 1e6:.1f} | {r['ratio']:.3f}" if other else " | "
+                print(
+                    f"| {phi:g} | {delta:g} | {n} | {r['molecule_steps_per_second'] / 1e6:.1f} "
+                    f"| {beside} | {r['bytes_per_molecule']:.0f} |",
+                    flush=True,
+                )
     keep(asked.json, results)
     return results
 

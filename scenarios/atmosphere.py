@@ -112,7 +112,12 @@ ladder = (
     Series("dsmc", "duration", (50, 100, 200, 400), {"molecules": 3000}),
     Series("dsmc", "molecules", (3000, 10_000, 30_000)),
     Series("exact", "duration", (50, 100), {"molecules": 3000, "plane": True, "knudsen": 0.05}),
-    Series("classic", "delta", (8, 4, 2), {"molecules": 3000, "plane": True, "knudsen": 0.05, "duration": 50}),
+    Series(
+        "stepped:applet-atmosphere",
+        "delta",
+        (8, 4, 2),
+        {"molecules": 3000, "plane": True, "knudsen": 0.05, "duration": 50},
+    ),
 )
 """Runs worth comparing: a column at rest is hardly sensitive to errors, except to a fall that creates energy."""
 

@@ -49,7 +49,7 @@ SETTLE = 400
 ladder = (
     Series("exact", "duration", (15, 60, 240)),
     Series("stepped", "delta", (0.4, 0.1), {"duration": 60}),
-    Series("classic", "delta", (0.4, 0.1), {"duration": 60}),
+    Series("stepped:applet-discs", "delta", (0.4, 0.1), {"duration": 60}),
 )
 """Runs worth comparing: every scheme that exchanges momentum shares the energy out; they differ in cost."""
 

@@ -52,7 +52,7 @@ ladder = (
     Series("exact", "duration", (5, 20, 80, 320)),
     Series("stepped", "delta", (0.8, 0.4, 0.2, 0.1, 0.05), {"duration": 20}, _LATE),
     Series("dsmc", "duration", (5, 20, 80, 320)),
-    Series("classic", "delta", (0.8, 0.4, 0.2), {"duration": 5}, _LATE),
+    Series("stepped:applet", "delta", (0.8, 0.4, 0.2), {"duration": 5}, _LATE),
 )
 """Runs worth comparing: steps miss collisions, in proportion to the square of their length."""
 

@@ -46,7 +46,7 @@ CASES = {
     "stepped": Case("temperature", {"molecules": 60}, 0.002, "stepped:delta=0.1"),
     "dsmc": Case("temperature", {"molecules": 60}, 0.02, "dsmc"),
     "dsmc-moist": Case("lifting-moist", FEW | {"ascent": 20}, 0.1, "dsmc"),
-    "classic": Case("elastic-collisions", {"molecules": 30}, 0.01, "classic"),
+    "applet": Case("elastic-collisions", {"molecules": 30}, 0.01, "stepped:applet-discs"),
 }
 
 

@@ -55,7 +55,7 @@ TABLES = {
             way(),
             way(cost=0.5, kelvin=0.4, share=0.004, duration=10.0),
             way(cost=0.1, kelvin=2.0, share=0.02, duration=1.0),
-            way("classic:delta=0.8", 0.05, kelvin=0.5, bias=2.5, duration=1.0),
+            way("stepped:applet,delta=0.8", 0.05, kelvin=0.5, bias=2.5, duration=1.0),
             way(cost=0.01, kelvin=0.01, share=0.0001, start="equal"),
             Measured("exact", {"molecules": 2}, 0.001, 8, {}),
         ),
@@ -146,13 +146,13 @@ def test_the_error_of_a_run_is_that_of_bias_noise_and_what_is_not_known_of_the_b
 
 def test_the_cheapest_way_within_the_wish_is_picked():
     cases = [
-        ("3K", "classic:delta=0.8", {"duration": 1.0}),
+        ("3K", "stepped:applet,delta=0.8", {"duration": 1.0}),
         ("2.5K", "exact", {"duration": 1.0}),  # the bias counts: sqrt(2.5² + 0.5²) K is more
         ("1.9K", "exact", {"duration": 10.0}),
         ("0.1K", "exact", {}),
-        ("2%", "classic:delta=0.8", {"duration": 1.0}),
+        ("2%", "stepped:applet,delta=0.8", {"duration": 1.0}),
         ("1%", "exact", {"duration": 10.0}),  # 2 K are 1 % of 200 K, and the pressure is off by 2 %
-        ("sketch", "classic:delta=0.8", {"duration": 1.0}),
+        ("sketch", "stepped:applet,delta=0.8", {"duration": 1.0}),
         ("lecture", "exact", {"duration": 10.0}),
         ("reference", "exact", {}),
     ]
@@ -230,11 +230,11 @@ def test_kelvins_are_not_asked_of_a_scene_without_temperatures():
 
 
 def test_an_engine_given_by_hand_is_looked_up_at_its_own_settings_alone():
-    found = expect("temperature", "classic:delta=0.8", {"duration": 1.0, "seed": 7}, TABLES)
+    found = expect("temperature", "stepped:applet,delta=0.8", {"duration": 1.0, "seed": 7}, TABLES)
     assert found.way is TABLES["temperature"].ways[3]
-    assert expect("temperature", "classic:delta=0.8", {}, TABLES) is None
-    assert expect("temperature", "classic:delta=0.4", {"duration": 1.0}, TABLES) is None
-    assert expect("lifting-dry", "classic:delta=0.8", {}, TABLES) is None
+    assert expect("temperature", "stepped:applet,delta=0.8", {}, TABLES) is None
+    assert expect("temperature", "stepped:applet,delta=0.4", {"duration": 1.0}, TABLES) is None
+    assert expect("lifting-dry", "stepped:applet,delta=0.8", {}, TABLES) is None
 
 
 # What is run and what the report says
@@ -256,10 +256,10 @@ def test_the_default_run_promises_nothing_that_was_not_asked_for():
 
 
 def test_an_accuracy_and_an_engine_exclude_each_other(tmp_path):
-    for engine in ("exact", "classic"):
+    for engine in ("exact", "stepped:applet"):
         with pytest.raises(SettingError, match=f"picks the engine itself: leave it out, or the engine {engine}"):
             runner.prepare("temperature", {}, accuracy="sketch", engine=engine)
-    result = command("run", "temperature", "--accuracy", "sketch", "--engine", "classic", "--dry-run")
+    result = command("run", "temperature", "--accuracy", "sketch", "--engine", "stepped:applet", "--dry-run")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "picks the engine itself" in result.stderr
 
@@ -313,7 +313,7 @@ def test_an_accuracy_may_stand_in_a_settings_file_and_in_python(tmp_path, hand_m
     file = tmp_path / "warm.toml"
     file.write_text('scene = "temperature"\naccuracy = "sketch"\n[settings]\nmolecules = 20\n', encoding="utf-8")
     planned = json.loads(command("run", "--config", str(file), "--dry-run", "--json").stdout)
-    assert (planned["engine"], planned["accuracy"]["wish"]) == ("classic:delta=0.8", "sketch")
+    assert (planned["engine"], planned["accuracy"]["wish"]) == ("stepped:applet,delta=0.8", "sketch")
     over = json.loads(command("run", "--config", str(file), "--accuracy", "0.1K", "--dry-run", "--json").stdout)
     assert (over["engine"], over["accuracy"]["wish"]) == ("exact", "0.1K")
     dataset = atmosbox.run("temperature", accuracy="lecture", molecules=20, duration="1 ns")
@@ -322,9 +322,9 @@ def test_an_accuracy_may_stand_in_a_settings_file_and_in_python(tmp_path, hand_m
 
 
 def test_an_approximate_engine_without_a_measurement_says_so_and_the_exact_one_need_not():
-    prepared = runner.prepare("temperature", {"molecules": 3}, engine="classic")
+    prepared = runner.prepare("temperature", {"molecules": 3}, engine="stepped:applet")
     (line,) = expectation_lines(prepared.expectation, (), str(prepared.engine), 200)
-    assert line.startswith("no error was measured for the engine classic at these settings")
+    assert line.startswith("no error was measured for the engine stepped:applet at these settings")
     assert expectation_lines(None, (), "", 80) == []
 
 
@@ -332,8 +332,8 @@ def test_the_expected_errors_are_shown_whole_at_every_width():
     for width in [20, 40, 80, 200]:
         picked = choose("temperature", "sketch", tables=TABLES)
         warm = Headline("mean_temperature", 202.25, 0.3, 200.0, 0.0, "", "K", "degC", "temperature")
-        words = " ".join(" ".join(expectation_lines(picked, (warm,), "classic:delta=0.8", width)).split())
-        for value in ("classic:delta=0.8, duration=1", "2.5 K", "+2.5 K ± 0 K", "0.5 K", "+2.2 K", "0.1 %"):
+        words = " ".join(" ".join(expectation_lines(picked, (warm,), "stepped:applet,delta=0.8", width)).split())
+        for value in ("stepped:applet,delta=0.8, duration=1", "2.5 K", "+2.5 K ± 0 K", "0.5 K", "+2.2 K", "0.1 %"):
             assert value in words
 
 
@@ -374,10 +374,10 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     settings = {"molecules": 20, "duration": 1.0}
     errors = {"mean_temperature": ExpectedError("K", -3.0, 0.5, 5.0, 298.15)}
     errors["mean_pressure"] = ExpectedError("1", 0.01, 0.002, 0.05, 1e5)
-    known = Measured("classic:delta=8", settings, 0.1, 8, errors)
+    known = Measured("stepped:applet,delta=2", settings, 0.1, 8, errors)
     tables = {"temperature": Table(("duration", "molecules"), LABELS, (known,))}
     monkeypatch.setattr(cheapest_of, "load", lambda: tables)
-    outcome = runner.execute(runner.prepare("temperature", settings, engine="classic:delta=8"))
+    outcome = runner.execute(runner.prepare("temperature", settings, engine="stepped:applet,delta=2"))
     found = {one.name: one for one in outcome.headlines}
     assert (found["mean_temperature"].bias, found["mean_temperature"].bias_se) == (-3.0, 0.5)
     assert found["mean_pressure"].bias == pytest.approx(0.01 * found["mean_pressure"].theory)
@@ -385,13 +385,15 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     cold = outcome.dataset
     cold["mean_temperature"] = cold.mean_temperature.copy(data=cold.mean_temperature_theory.item() - 43.0)
     cold["mean_temperature_se"] = cold.mean_temperature_se.copy(data=10.0)
-    again = output.read(output.write(cold, tmp_path / "classic.nc"))
+    again = output.read(output.write(cold, tmp_path / "steps.nc"))
     warm = next(one for one in runner.headlines_of(again) if one.name == "mean_temperature")
     assert (warm.bias, warm.verdict, warm.excuse) == (-3.0, AS_STATED, ENGINE_IS_OFF)
     (said,) = (one for one in runner.verify(again) if one.name == "mean_temperature")
     assert said.passed
     assert said.sentence.endswith(ENGINE_IS_OFF)
-    other = runner.execute(runner.prepare("temperature", {**settings, "pressure": 900.0}, engine="classic:delta=8"))
+    other = runner.execute(
+        runner.prepare("temperature", {**settings, "pressure": 900.0}, engine="stepped:applet,delta=2")
+    )
     assert all(one.bias == 0.0 for one in other.headlines)
 
 

@@ -63,7 +63,6 @@ LATER = {
         *("one-molecule-of-water", "drying-pool", "water-at-95", "water-at-minus-60"),
         *("two-molecules", "hot-and-cold", "cold-floor"),
     },
-    "classic": {*STEPPED, "step-of-a-quarter", "clock-at-1e9"},
 }
 """Cases of the tier ``validate``, which take seconds.
 

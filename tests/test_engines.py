@@ -27,17 +27,18 @@ def test_an_engine_is_what_it_says_and_knows_its_options(name):
     known = {**inspect.signature(Parcel.__init__).parameters, **inspect.signature(parcel.__init__).parameters}
     for option in engine.parameters:
         assert option.name in known
-        if option.name not in ("scheme", "cell"):  # they depend on the box, or replace another option
+        if option.name != "cell":  # it replaces another option
             assert known[option.name].default == option.default
 
 
-def test_a_choice_is_spelled_as_it_is_read():
+def test_a_choice_is_spelled_as_it_is_read_and_presets_by_their_names():
     for text in (
         "exact",
         "exact:collisions=off",
         "stepped:delta=0.02,motion=euler",
+        "stepped:applet",
+        "stepped:applet-discs,delta=0.1",
         "dsmc:dt=0.5,threads=2",
-        "classic:closing_only=off",
     ):
         assert str(choose(text)) == text
         assert choose(choose(text)) == choose(text)
@@ -46,6 +47,8 @@ def test_a_choice_is_spelled_as_it_is_read():
 def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
     cases = [
         ("exakt", "exact"),
+        ("classic", "stepped:applet"),
+        ("classic:delta=0.2", "stepped:applet"),
         ("", "exact"),
         ("stepped:", "stepped"),
         ("stepped:delta", "stepped:delta=value"),
@@ -58,6 +61,8 @@ def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
     for text, fix in cases:
         with pytest.raises(SettingError, match=f"give --engine {fix}"):
             choose(text)
+    changed = choose("stepped:applet,smooth_walls=clamp")
+    assert str(changed) == "stepped:rule=index-order,motion=euler,smooth_walls=clamp"
     with pytest.raises(UnknownSettingError, match="give --engine stepped:delta=1"):
         choose("stepped:delt=1")
     with pytest.raises(UnknownSettingError, match="give one of collisions"):
@@ -65,8 +70,8 @@ def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
 
 
 def test_a_file_knows_its_engine():
-    made = runner.run("elastic-collisions", duration="1 s", engine="classic:delta=0.2")
-    assert str(used(made)) == "classic:delta=0.2"
+    made = runner.run("elastic-collisions", duration="1 s", engine="stepped:applet,delta=0.005")
+    assert str(used(made)) == "stepped:applet,delta=0.005"
     assert used(made).ideal is False
     assert choose("dsmc").ideal is True
 
@@ -109,19 +114,28 @@ def test_many_molecules_of_a_thin_gas_run_on_dsmc_and_few_on_the_exact_engine(sc
 
 def test_an_engine_that_cannot_do_a_scene_says_why(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(app, ["run", "lifting-dry", "--engine", "classic"])
+    done = CliRunner().invoke(app, ["run", "lifting-moist", "--engine", "stepped"])
     assert done.exit_code == 2
-    assert "piston" in done.output
+    assert "cannot simulate liquid water" in done.output
     assert "give --engine exact" in done.output
     assert not list(tmp_path.iterdir())
 
 
 def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    words = ["run", "elastic-collisions", "--set", "duration=1s", "--engine", "classic:delta=0.2", "--out", "a.nc"]
+    words = [
+        "run",
+        "elastic-collisions",
+        "--set",
+        "duration=1s",
+        "--engine",
+        "stepped:applet,delta=0.005",
+        "--out",
+        "a.nc",
+    ]
     assert CliRunner().invoke(app, words).exit_code == 0
     again = CliRunner().invoke(app, ["run", "--from", "a.nc", "--out", "b.nc", "--dry-run"])
-    assert "classic:delta=0.2" in again.output
+    assert "stepped:applet,delta=0.005" in again.output
 
 
 MOVES, SPINS, FALLS, LIQUID = STORES
@@ -134,7 +148,7 @@ CLUMP = {"molecules": 200, "start": "drop", "density": 0.15, "duration": "0.4 ns
 PARTS = [
     ("temperature", "", {}, {}, {MOVES, WALLS}),
     ("temperature-large", "", SMALL, {}, {MOVES, WALLS}),
-    ("temperature", "classic:delta=0.8", {"duration": 1}, {}, {MOVES, WALLS}),
+    ("temperature", "stepped:applet,delta=0.8", {"duration": 1}, {}, {MOVES, WALLS}),
     ("elastic-collisions", "", {}, {}, {MOVES}),
     ("diffusion", "", {"molecules": 300, "mass_ratio": 4}, {}, {MOVES}),
     ("atmosphere", "exact", SMALL, {}, {MOVES, FALLS, WALLS}),
@@ -143,7 +157,13 @@ PARTS = [
     ("atmosphere", "exact", SMALL | {"start": "bottom", "floor": "isolated"}, {}, {MOVES, FALLS}),
     ("atmosphere", "stepped:delta=0.8", SMALL, {}, {MOVES, FALLS, WALLS}),
     ("atmosphere", "stepped:delta=0.8,motion=euler", SMALL, {}, {MOVES, FALLS, WALLS, SCHEME}),
-    ("atmosphere", "classic:delta=8", SMALL | {"plane": True, "knudsen": 0.05}, {}, {MOVES, FALLS, WALLS, SCHEME}),
+    (
+        "atmosphere",
+        "stepped:applet,delta=8",
+        SMALL | {"plane": True, "knudsen": 0.05},
+        {},
+        {MOVES, FALLS, WALLS, SCHEME},
+    ),
     ("atmosphere", "dsmc", SMALL | {"rotation": True}, {}, {MOVES, SPINS, FALLS, WALLS}),
     ("atmosphere", "", {"stirring": 50}, {}, {MOVES, SPINS, FALLS, WALLS, STIRRING}),
     ("atmosphere", "", {"stirring": 50, "exchange": "molecules"}, {}, {MOVES, SPINS, FALLS, WALLS}),

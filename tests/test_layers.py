@@ -59,7 +59,7 @@ LAYERS = {
 }
 """One row for each package; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
-DOORS = ("by_reference", "compiler", "constant_modes", "lanes", "window")
+DOORS = ("by_reference", "compiler", "constant_modes", "lanes")
 """The files that may use the compiler: those that compile kernels, and those that write single instructions."""
 
 

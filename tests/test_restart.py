@@ -24,7 +24,7 @@ from tests.in_process import typed
 RUNS = {
     "discs": ("elastic-collisions", {"duration": "5 s"}, None),
     "walls": ("temperature", {"molecules": 60, "duration": "0.4 ns"}, None),
-    "strips": ("elastic-collisions", {"duration": "5 s"}, "classic"),
+    "applet": ("elastic-collisions", {"duration": "5 s"}, "stepped:applet-discs,delta=0.005"),
     "column": ("atmosphere", {"molecules": 200, "duration": 3}, None),
     "column by dsmc": ("atmosphere", {"molecules": 200, "duration": 3}, "dsmc"),
     "stirred column": ("atmosphere", {"molecules": 200, "duration": 3, "stirring": 20}, None),

@@ -7,9 +7,8 @@ Read `core` first, then `exact`; the other folders when you need them. Each list
 `exact`    event-driven: time jumps from one event to the next; and a slow reference
 `wells`    molecules that attract each other, event-driven too
 `liquid`   condensed water: as a reservoir, a mist, drops or a pool
-`stepped`  in time steps: all molecules move, then those that overlap collide
+`stepped`  in time steps, the way of teaching applets: all molecules move, then those that overlap collide
 `dsmc`     direct simulation Monte Carlo
-`classic`  the time-stepped schemes of common teaching applets
 
 Everything is in reduced units; the engine knows no kelvin, no file and no scenario. The names below are imported when
 they are first used, so that a program that needs only a schedule does not wait for the compiler.

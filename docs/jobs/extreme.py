@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from jobs.drawing import BLUE, VERMILLION, axes_of, explain, save, sheet
+from jobs.drawing import BLUE, axes_of, explain, save, sheet
 from jobs.registry import Findings, job, rounded
 
 from atmosbox import theory
@@ -194,14 +194,13 @@ def contacts_seen(engine: str, delta: float, contacts: float) -> tuple[float, fl
 @job("tunnelling")
 def tunnelling(found: Findings) -> None:
     """Count the contacts that steps of all lengths see."""
-    lengths = {"stepped": (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4), "classic": (0.1, 0.3, 1.0, 3.0, 10.0, 30.0)}
-    points = {}
+    deltas, points = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4), []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that these steps are too long is what is to be seen
-        for engine, deltas in lengths.items():
-            points[engine] = [contacts_seen(f"{engine}:delta={delta:g}", delta, 4000.0) for delta in deltas]
-            for delta, (share, error) in zip(deltas, points[engine], strict=True):
-                found.agree(f"{engine}, δ = {delta:g}", share, error, seen_share(delta))
+        for delta in deltas:
+            share, error = contacts_seen(f"stepped:delta={delta:g}", delta, 4000.0)
+            points.append((share, error))
+            found.agree(f"stepped, δ = {delta:g}", share, error, seen_share(delta))
     delta = np.geomspace(0.02, 50.0, 300)
     with axes_of(1, (7.0, 4.8)) as (drawing, (axis,)):
         axis.plot(delta, [seen_share(each) for each in delta], color="#1a1a1a", label="law for all steps")
@@ -209,9 +208,8 @@ def tunnelling(found: Findings) -> None:
         axis.plot(small, 1.0 - 8.0 / 3.0 * small**2, ":", color="#595959", label="1 − 8δ²/3")
         large = delta[delta > 0.32]
         axis.plot(large, math.sqrt(math.pi) / 6.0 / large, "--", color="#595959", label="√π / 6δ")
-        for (engine, deltas), marker, colour in zip(lengths.items(), "os", (BLUE, VERMILLION), strict=True):
-            share, error = np.array(points[engine]).T
-            axis.errorbar(deltas, share, error, fmt=marker, color=colour, capsize=3, label=engine)
+        shares, errors = np.array(points).T
+        axis.errorbar(deltas, shares, errors, fmt="o", color=BLUE, capsize=3, label="stepped")
         axis.set(
             title="The longer the step, the fewer contacts it sees",
             xlabel="δ, length of a step in diameters at thermal speed",

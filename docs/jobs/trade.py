@@ -126,10 +126,10 @@ def approaching(found: Findings) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a coarse step is what is shown
         boxes = [
-            engines.choose(f"stepped:delta=0.01,approaching={word}").make(
+            engines.choose(f"stepped:delta=0.01,rule={rule}").make(
                 *start, length=(side,) * 3, walls=(Periodic(),) * 6, seed=1
             )
-            for word in ("on", "off")
+            for rule in ("pairwise", "every-overlap")
         ]
     energy = [sum(box.energy()) for box in boxes]
     before, last = [0, 0], 0.0
@@ -146,19 +146,6 @@ def approaching(found: Findings) -> None:
         ["time [σ/√(kT/m)]", "collisions over theory", "without the test", "change of the energy", "without the test"],
         rows,
     )
-
-
-@job("classic-cost", quick=True)
-def classic_cost(found: Findings) -> None:
-    """Make the table of what all pairs cost, beside the exact engine at the same error."""
-    path = FOLDER / "classic.json"
-    data = json.loads(path.read_text(encoding="utf-8"))
-    rows = [
-        [f"{one['packing_fraction']:g}", one["molecules"], f"{one['delta']:.4f}",
-         f"{100.0 * one['error_measured']:.2f} ± {100.0 * one['error_of_that']:.2f} %", rounded(one["factor"])]
-        for one in data["beside"]
-    ]  # fmt: skip
-    found.table(["packing fraction", "molecules", "δ", "Z − 1 too low by", "times dearer than exact"], rows)
 
 
 @job("precision", quick=True)

@@ -20,12 +20,11 @@ from atmosbox.engine import (
     maxwell_velocities,
     random_positions,
 )
-from atmosbox.engine.classic.classic import ClassicParcel
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 
-ENGINES = (ParcelSet, SteppedParcel, DsmcParcel, ClassicParcel)
+ENGINES = (ParcelSet, SteppedParcel, DsmcParcel)
 BATHS = (HeatBath(1.0),) * 6
 COLUMN = (Periodic(),) * 4 + (HeatBath(1.0), Specular())
 WATER = Substance(mass=1.0, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)

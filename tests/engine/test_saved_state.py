@@ -21,7 +21,6 @@ from atmosbox.engine import (
     Specular,
     Substance,
 )
-from atmosbox.engine.classic.classic import ClassicParcel
 from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
@@ -78,10 +77,6 @@ BOXES = {
         *gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()
     ),
     "dsmc over a pool": lambda: MoistDsmcParcel(*gas(), length=(12.0,) * 3, liquid=Pool(WATER, number=40, kT=1.0)),
-    "strips": lambda: ClassicParcel(
-        gas()[0] * [1, 0, 1] + [0, 6, 0], gas()[1] * [1, 0, 1], length=(12.0,) * 3, planar=True
-    ),
-    "spheres": lambda: ClassicParcel(*gas(), length=(12.0,) * 3),
 }  # fmt: skip
 
 
@@ -176,7 +171,7 @@ def test_a_driver_that_cannot_be_saved_is_named():
 
 def test_a_state_is_not_taken_for_that_of_another_box():
     with pytest.raises(RefusedError):
-        BOXES["spheres"]().restore(BOXES["lift"]().state())
+        BOXES["stepped"]().restore(BOXES["lift"]().state())
 
 
 def test_numbers_of_numpy_stay_apart():

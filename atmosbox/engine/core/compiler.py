@@ -1,6 +1,6 @@
 """How numba compiles a kernel; this file is imported when a kernel is first called.
 
-Besides this file, `constant_modes`, `by_reference` and `exact.lanes` extend numba, and `stepped.window` its vectors.
+Besides this file, `constant_modes`, `by_reference` and `exact.lanes` extend numba.
 """
 
 import contextlib

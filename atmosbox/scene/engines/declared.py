@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from atmosbox.errors import SettingError
-from atmosbox.scene.parameter import Parameter
+from atmosbox.scene.parameter import Parameter, Value
 
 if TYPE_CHECKING:
     from atmosbox.engine import Liquid, Parcel
@@ -40,6 +40,8 @@ class Engine:
         Function that returns the class of its parcels of molecules that attract each other, if there is one.
     stirred
         Function that returns the class of its stirred columns, if there is one.
+    presets
+        Names that stand for several options at once.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Engine:
     moist: Callable[[Liquid], type[Parcel]] | None = None
     attracting: Callable[[], type[Parcel]] | None = None
     stirred: Callable[[], type[Parcel]] | None = None
+    presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
 
 
 def _exact() -> type[Parcel]:
@@ -100,12 +103,6 @@ def _stirred_dsmc() -> type[Parcel]:
     return StirredDsmcParcel
 
 
-def _classic() -> type[Parcel]:
-    from atmosbox.engine.classic.classic import ClassicParcel
-
-    return ClassicParcel
-
-
 def _number(name: str, default: float, low: float, high: float, help: str) -> Parameter:
     return Parameter(name, "1", default, low, high, None, help, "float")
 
@@ -118,11 +115,9 @@ def _count(name: str, default: int, high: int, help: str) -> Parameter:
     return Parameter(name, "1", default, 1, high, None, help, "int")
 
 
-def _switch(name: str, default: bool, help: str) -> Parameter:
-    return Parameter(name, "", default, None, None, None, help, "bool")
-
-
-_COLLISIONS = _switch("collisions", True, "whether molecules collide with each other, or with walls alone")
+_COLLISIONS = Parameter(
+    "collisions", "", True, None, None, None, "whether molecules collide with each other, or with walls alone", "bool"
+)
 _DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
 
 ENGINES: Mapping[str, Engine] = MappingProxyType(
@@ -140,20 +135,28 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
             ),
             Engine(
                 "stepped",
-                "equal steps: all molecules move, then those that overlap and approach collide",
+                "equal steps, as in applets: all molecules move, then those that overlap and approach collide",
                 _stepped,
                 (
                     _number("delta", 0.05, 1e-6, 1e3, _DELTA),
-                    _word("motion", ("parabola", "euler", "semi-implicit"), "how molecules fall"),
+                    _word(
+                        "rule",
+                        ("pairwise", "index-order", "look-ahead", "every-overlap"),
+                        "which pairs collide, and how they are found",
+                    ),
+                    _word("motion", ("parabola", "euler"), "how molecules fall"),
                     _word(
                         "smooth_walls",
-                        ("mirror", "fold", "flip", "clamp", "rewind"),
+                        ("mirror", "fold", "flip", "clamp", "undo"),
                         "what smooth walls do with a molecule that has gone through them",
                     ),
-                    _switch("approaching", True, "whether only pairs that approach collide"),
                     _COLLISIONS,
-                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
                 ),
+                presets={
+                    "applet": {"rule": "index-order", "motion": "euler", "smooth_walls": "fold"},
+                    "applet-discs": {"rule": "look-ahead", "motion": "euler", "smooth_walls": "clamp"},
+                    "applet-atmosphere": {"rule": "pairwise", "motion": "parabola", "smooth_walls": "undo"},
+                },
             ),
             Engine(
                 "dsmc",
@@ -170,17 +173,6 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
                 moist=_moist_dsmc,
                 stirred=_stirred_dsmc,
-            ),
-            Engine(
-                "classic",
-                "steps, as teaching applets take them: overlapping pairs swap velocities",
-                _classic,
-                (
-                    _number("delta", 0.1, 1e-6, 1e3, _DELTA),
-                    _word("scheme", ("spheres", "lookahead", "strips"), "which scheme, if not what suits the box"),
-                    _switch("closing_only", True, "whether only pairs that approach collide"),
-                    _COLLISIONS,
-                ),
             ),
         )
     }

@@ -53,8 +53,13 @@ class EngineChoice:
     def __str__(self) -> str:
         """Return the text that chooses this engine."""
         known = {parameter.name: parameter for parameter in self.engine.parameters}
-        options = ",".join(f"{name}={known[name].typed(value)}" for name, value in self.options.items())
-        return self.engine.name + (f":{options}" if options else "")
+        words: list[str] = []
+        preset: Mapping[str, Value] = {}
+        for name, options in self.engine.presets.items():
+            if options.items() <= self.options.items():
+                words, preset = [name], options
+        words += [f"{name}={known[name].typed(value)}" for name, value in self.options.items() if name not in preset]
+        return self.engine.name + (f":{','.join(words)}" if words else "")
 
     @property
     def name(self) -> str:
@@ -126,7 +131,8 @@ def choose(text: str | EngineChoice) -> EngineChoice:
     Parameters
     ----------
     text
-        A name, or a name and options: ``stepped:delta=0.02``.
+        A name, or a name and options: ``stepped:delta=0.02``. A preset is a name for several options, which those
+        after it may change: ``stepped:applet,delta=0.1``.
 
     Raises
     ------
@@ -138,21 +144,25 @@ def choose(text: str | EngineChoice) -> EngineChoice:
     >>> choose("exakt")
     Traceback (most recent call last):
         ...
-    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc, classic: give --engine exact.
+    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc: give --engine exact.
     """
     if isinstance(text, EngineChoice):
         return text
     name, colon, rest = str(text).strip().partition(":")
     if name not in ENGINES:
-        near = nearest(name, ENGINES) or next(iter(ENGINES))
+        near = "stepped:applet" if name == "classic" else nearest(name, ENGINES) or next(iter(ENGINES))
         raise SettingError("engine", name, f"is not one of {', '.join(ENGINES)}", f"give --engine {near}")
     engine = ENGINES[name]
     if colon and not rest.strip():
         raise SettingError("engine", text, "ends in a colon without options", f"give --engine {name}")
     parameters = {parameter.name: parameter for parameter in engine.parameters}
+    words = [word.strip() for word in rest.split(",")] if rest else []
+    options = {option: value for word in words for option, value in engine.presets.get(word, {}).items()}
     try:
-        given = by_name(assignments(rest.split(",") if rest else ()), parameters, f"an option of the engine {name}")
-        return EngineChoice(engine, {option: parameters[option].parse(value) for option, value in given.items()})
+        typed = assignments(word for word in words if word not in engine.presets)
+        given = by_name(typed, parameters, f"an option of the engine {name}")
+        options |= {option: parameters[option].parse(value) for option, value in given.items()}
+        return EngineChoice(engine, options)
     except SettingError as error:
         setting, fix = (part.replace("--set ", f"--engine {name}:") for part in (error.setting, error.fix))
         raise type(error)(setting, error.value, error.problem, fix) from None

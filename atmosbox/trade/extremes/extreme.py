@@ -83,25 +83,24 @@ def crystal_factor(packing: float) -> float:
 def dense(packing: float, finer: float = 0.0) -> Probe:
     """Return a probe of the pressure of a fluid or, above the freezing density, of a crystal.
 
-    ``finer`` is the step of stepped and classic in place of the usual one [diameters].
+    ``finer`` is the step of stepped in place of the usual one [diameters].
     """
     if packing > 0.494:
         return pressure(crystal(256, side_of(packing)), crystal_factor(packing), 2.0, 1.0)
-    options = {name: {"delta": finer} for name in ("stepped", "classic") if finer}
+    options = {"stepped": {"delta": finer}} if finer else {}
     new = gas(256, side_of(packing), walls=OPEN, options=options)
     return pressure(new, float(theory.compressibility_factor(packing)), 10.0, 2.0)
 
 
 def coarse(step: float) -> Probe:
     """Return a probe of the contacts in a thin gas, with a step in diameters or, for dsmc, in mean free times."""
-    options = {"stepped": {"delta": step}, "classic": {"delta": step}, "dsmc": {"dt": step}}
+    options = {"stepped": {"delta": step}, "dsmc": {"dt": step}}
     return contacts(gas(256, side_of(0.01), walls=OPEN, options=options), 100.0, 4000.0, slack=0.005)
 
 
 def many(run: GuardedRun) -> Reading:
-    """Count the contacts of a million molecules, or of 2000 for classic, which would test 5e11 pairs in a step."""
-    number = 2_000 if run.engine == "classic" else 1_000_000
-    return contacts(gas(number, side_of(0.01, number)), 2.0, 2.0, slack=0.005)(run)
+    """Count the contacts of a million molecules."""
+    return contacts(gas(1_000_000, side_of(0.01, 1_000_000)), 2.0, 2.0, slack=0.005)(run)
 
 
 def pushed(*speed: float) -> Any:
@@ -194,7 +193,7 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
             "Keep three molecules, the fewest that can meet at once: they meet as theory says.",
             contacts(few(3), 100.0, 200_000.0, slack=0.02)),
         Extreme("million", "N = 10⁶",
-            "Take a million molecules (classic, which tests all pairs, 2000): each meets others as theory says.",
+            "Take a million molecules: each meets others as theory says.",
             many, long=True),
     ),
     "how dense": (

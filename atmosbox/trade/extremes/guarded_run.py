@@ -19,7 +19,7 @@ from atmosbox.scene.engines import EngineChoice
 
 __all__ = ["Candidate", "GuardedRun", "UnlawfulError", "deepest_overlap", "step_of"]
 
-APPROXIMATE = ("stepped", "dsmc", "classic")
+APPROXIMATE = ("stepped", "dsmc")
 CLOSES, OUTSIDE, OVERLAP = 1e-10, 1e-9, 1e-9
 """Limits for rounding: residual of the energy ledger, distance outside the box [sides], overlap of a pair [diameters].
 """
