@@ -55,7 +55,7 @@ TABLES = {
             way(),
             way(cost=0.5, kelvin=0.4, share=0.004, duration=10.0),
             way(cost=0.1, kelvin=2.0, share=0.02, duration=1.0),
-            way("stepped:applet,delta=0.8", 0.05, kelvin=0.5, bias=2.5, duration=1.0),
+            way("stepped:applet,delta=0.01", 0.05, kelvin=0.5, bias=2.5, duration=1.0),
             way(cost=0.01, kelvin=0.01, share=0.0001, start="equal"),
             Measured("exact", {"molecules": 2}, 0.001, 8, {}),
         ),
@@ -146,13 +146,13 @@ def test_the_error_of_a_run_is_that_of_bias_noise_and_what_is_not_known_of_the_b
 
 def test_the_cheapest_way_within_the_wish_is_picked():
     cases = [
-        ("3K", "stepped:applet,delta=0.8", {"duration": 1.0}),
+        ("3K", "stepped:applet,delta=0.01", {"duration": 1.0}),
         ("2.5K", "exact", {"duration": 1.0}),  # the bias counts: sqrt(2.5² + 0.5²) K is more
         ("1.9K", "exact", {"duration": 10.0}),
         ("0.1K", "exact", {}),
-        ("2%", "stepped:applet,delta=0.8", {"duration": 1.0}),
+        ("2%", "stepped:applet,delta=0.01", {"duration": 1.0}),
         ("1%", "exact", {"duration": 10.0}),  # 2 K are 1 % of 200 K, and the pressure is off by 2 %
-        ("sketch", "stepped:applet,delta=0.8", {"duration": 1.0}),
+        ("sketch", "stepped:applet,delta=0.01", {"duration": 1.0}),
         ("lecture", "exact", {"duration": 10.0}),
         ("reference", "exact", {}),
     ]
@@ -230,11 +230,11 @@ def test_kelvins_are_not_asked_of_a_scene_without_temperatures():
 
 
 def test_an_engine_given_by_hand_is_looked_up_at_its_own_settings_alone():
-    found = expect("temperature", "stepped:applet,delta=0.8", {"duration": 1.0, "seed": 7}, TABLES)
+    found = expect("temperature", "stepped:applet,delta=0.01", {"duration": 1.0, "seed": 7}, TABLES)
     assert found.way is TABLES["temperature"].ways[3]
-    assert expect("temperature", "stepped:applet,delta=0.8", {}, TABLES) is None
-    assert expect("temperature", "stepped:applet,delta=0.4", {"duration": 1.0}, TABLES) is None
-    assert expect("lifting-dry", "stepped:applet,delta=0.8", {}, TABLES) is None
+    assert expect("temperature", "stepped:applet,delta=0.01", {}, TABLES) is None
+    assert expect("temperature", "stepped:applet,delta=0.02", {"duration": 1.0}, TABLES) is None
+    assert expect("lifting-dry", "stepped:applet,delta=0.01", {}, TABLES) is None
 
 
 # What is run and what the report says
@@ -313,7 +313,7 @@ def test_an_accuracy_may_stand_in_a_settings_file_and_in_python(tmp_path, hand_m
     file = tmp_path / "warm.toml"
     file.write_text('scene = "temperature"\naccuracy = "sketch"\n[settings]\nmolecules = 20\n', encoding="utf-8")
     planned = json.loads(command("run", "--config", str(file), "--dry-run", "--json").stdout)
-    assert (planned["engine"], planned["accuracy"]["wish"]) == ("stepped:applet,delta=0.8", "sketch")
+    assert (planned["engine"], planned["accuracy"]["wish"]) == ("stepped:applet,delta=0.01", "sketch")
     over = json.loads(command("run", "--config", str(file), "--accuracy", "0.1K", "--dry-run", "--json").stdout)
     assert (over["engine"], over["accuracy"]["wish"]) == ("exact", "0.1K")
     dataset = atmosbox.run("temperature", accuracy="lecture", molecules=20, duration="1 ns")
@@ -332,8 +332,8 @@ def test_the_expected_errors_are_shown_whole_at_every_width():
     for width in [20, 40, 80, 200]:
         picked = choose("temperature", "sketch", tables=TABLES)
         warm = Headline("mean_temperature", 202.25, 0.3, 200.0, 0.0, "", "K", "degC", "temperature")
-        words = " ".join(" ".join(expectation_lines(picked, (warm,), "stepped:applet,delta=0.8", width)).split())
-        for value in ("stepped:applet,delta=0.8, duration=1", "2.5 K", "+2.5 K ± 0 K", "0.5 K", "+2.2 K", "0.1 %"):
+        words = " ".join(" ".join(expectation_lines(picked, (warm,), "stepped:applet,delta=0.01", width)).split())
+        for value in ("stepped:applet,delta=0.01, duration=1", "2.5 K", "+2.5 K ± 0 K", "0.5 K", "+2.2 K", "0.1 %"):
             assert value in words
 
 
@@ -374,10 +374,10 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     settings = {"molecules": 20, "duration": 1.0}
     errors = {"mean_temperature": ExpectedError("K", -3.0, 0.5, 5.0, 298.15)}
     errors["mean_pressure"] = ExpectedError("1", 0.01, 0.002, 0.05, 1e5)
-    known = Measured("stepped:applet,delta=2", settings, 0.1, 8, errors)
+    known = Measured("stepped:applet,delta=0.01", settings, 0.1, 8, errors)
     tables = {"temperature": Table(("duration", "molecules"), LABELS, (known,))}
     monkeypatch.setattr(cheapest_of, "load", lambda: tables)
-    outcome = runner.execute(runner.prepare("temperature", settings, engine="stepped:applet,delta=2"))
+    outcome = runner.execute(runner.prepare("temperature", settings, engine="stepped:applet,delta=0.01"))
     found = {one.name: one for one in outcome.headlines}
     assert (found["mean_temperature"].bias, found["mean_temperature"].bias_se) == (-3.0, 0.5)
     assert found["mean_pressure"].bias == pytest.approx(0.01 * found["mean_pressure"].theory)
@@ -392,7 +392,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     assert said.passed
     assert said.sentence.endswith(ENGINE_IS_OFF)
     other = runner.execute(
-        runner.prepare("temperature", {**settings, "pressure": 900.0}, engine="stepped:applet,delta=2")
+        runner.prepare("temperature", {**settings, "pressure": 900.0}, engine="stepped:applet,delta=0.01")
     )
     assert all(one.bias == 0.0 for one in other.headlines)
 

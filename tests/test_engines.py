@@ -1,6 +1,7 @@
 """The list of engines: which engines and options are accepted, and which are refused."""
 
 import inspect
+import json
 import warnings
 
 import pytest
@@ -69,11 +70,16 @@ def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
         choose("exact:delta=1")
 
 
-def test_a_file_knows_its_engine():
+def test_a_file_knows_its_engine_also_one_of_an_earlier_version():
     made = runner.run("elastic-collisions", duration="1 s", engine="stepped:applet,delta=0.005")
     assert str(used(made)) == "stepped:applet,delta=0.005"
     assert used(made).ideal is False
     assert choose("dsmc").ideal is True
+    for earlier, ideal in (("classic:scheme=strips", False), ("stepped:threads=2,collisions=off", True)):
+        old = made.assign_attrs(atmosbox_parameters=json.dumps({"engine": earlier}))
+        assert (used(old).name, used(old).ideal) == ("stepped", ideal)
+    with pytest.raises(SettingError, match="engine = exakt"):
+        used(made.assign_attrs(atmosbox_parameters=json.dumps({"engine": "exakt"})))
 
 
 def test_a_scene_without_engines_runs_on_the_exact_one_alone(tmp_path):

@@ -28,6 +28,7 @@ from atmosbox.engine import (
     ParcelSet,
     Periodic,
     Piston,
+    Ramp,
     RefusedError,
     Specular,
     StalledError,
@@ -44,7 +45,8 @@ many_steps = pytest.mark.skipif(not COMPILED, reason="takes minutes without numb
 S, P = Specular(), Periodic()
 STEPS = np.array([0.0125, 0.025, 0.05, 0.1])
 RULES = ("pairwise", "index-order", "look-ahead", "every-overlap")
-ALL_AT_ONCE = {"walls": (HeatBath(1.5), HeatBath(0.7), P, P, HeatBath(1.0, 0.5), Piston()), "gravity": 0.1}
+WARMED = HeatBath(Ramp(1.0, 2.0, start=0.1, end=3.0))
+ALL_AT_ONCE = {"walls": (WARMED, HeatBath(0.7), P, P, HeatBath(1.0, 0.5), Piston(0.1)), "gravity": 0.1}
 
 
 def parcel(position, velocity, **options):
@@ -392,6 +394,7 @@ def test_the_energy_budget_closes_and_nobody_is_outside_whatever_the_rules(walls
         x, reach = box.snapshot().position, np.where(box.periodic, 0.0, 0.5 * box.diameter[:, None])
         furthest = max(furthest, float(np.maximum(reach - x, x - (box.length - reach)).max()))
     assert exchanged > 0.5 * sum(box.energy())
+    assert box.work != 0.0 == box.wall_heat[5]
     assert box.wall_hits[[0, 1, 4, 5]].min() > 100
     assert box.contacts > 300
     assert (furthest > 0.01) == (walls == "flip")

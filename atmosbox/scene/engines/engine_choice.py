@@ -184,15 +184,20 @@ def suited(molecules: int) -> str:
 
 
 def used(dataset: xr.Dataset) -> EngineChoice:
-    """Return the engine that made a dataset.
+    """Return the engine that made a dataset; of one that was in steps in an earlier version, only what still exists.
 
     Raises
     ------
     SettingError
-        If this version has no such engine.
+        If there never was such an engine.
     """
-    made = json.loads(dataset.attrs.get("atmosbox_parameters", "{}"))
-    return choose(str(made.get("engine", "exact")))
+    made = str(json.loads(dataset.attrs.get("atmosbox_parameters", "{}")).get("engine", "exact"))
+    try:
+        return choose(made)
+    except SettingError:
+        if made.partition(":")[0] not in ("classic", "stepped"):
+            raise
+        return choose("stepped:collisions=off" if "collisions=off" in made else "stepped")
 
 
 EXACT = EngineChoice(ENGINES["exact"])
