@@ -597,6 +597,19 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     unknown = fallen * column.room
     reason = "hard molecules crowd on the floor"
     steep = (column.scale_height_of(mean + 1e-4) - column.scale_height_of(mean)) / 1e-4
+    scale_height = Headline(
+        "scale_height",
+        found * length,
+        (near - found) / 1e-4 * error * length,
+        column.scale_height_of(mean) * length,
+        steep * unknown * mean * length,
+        reason,
+        "m",
+        "km",
+        "scale height",
+    )
+    # a column that is far lower than a scale height is too even to tell it
+    told = scale_height.standard_error <= 0.1 * column.scale_height_of(mean) * length
     return (
         Headline(
             "mean_surface_pressure",
@@ -620,17 +633,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
             reason="a finite number of molecules",
         ),
-        Headline(
-            "scale_height",
-            found * length,
-            (near - found) / 1e-4 * error * length,
-            column.scale_height_of(mean) * length,
-            steep * unknown * mean * length,
-            reason,
-            "m",
-            "km",
-            "scale height",
-        ),
+        *([scale_height] if told else []),
         Headline(
             "mean_height",
             high * length,

@@ -50,7 +50,7 @@ def files(tmp_path_factory):
         with pytest.raises(runner.Interrupted):
             runner.execute(prepared, checkpoint=Checkpoint("half.nc"), progress=stop)
         sweep(plan("elastic-collisions", ["molecules=10,20"], settings={"duration": 2.0}), "sweep.nc", jobs=1)
-        yield sorted(place.iterdir())
+        yield sorted(path for path in place.iterdir() if path.is_file())
 
 
 def other_bytes(path, draw):
@@ -137,7 +137,7 @@ def tried(files, seed):
         return typed("netCDF files", *words)
     finally:
         for path in Path.cwd().iterdir():
-            if path not in files:
+            if path.is_file() and path not in files:
                 path.unlink()
 
 

@@ -56,7 +56,7 @@ WRONG = {
         "my_scene.py cannot be run (TypeError: ",
     ),
     "a shape": ('np.full(dataset.sizes["elapsed_time"],', "np.full(3,", "my_scene.py cannot be run (ValueError"),
-    "wrong arguments": ("return (Headline(", "return (Headline(1, 2, 3, 4,", "LINE cannot be run (TypeError"),
+    "wrong arguments": ("return (Headline(", "return (Headline(*range(30),", "LINE cannot be run (TypeError"),
 }
 
 

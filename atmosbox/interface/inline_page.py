@@ -103,7 +103,7 @@ def show(
     Examples
     --------
     >>> import atmosbox as ab
-    >>> ab.show(ab.run("temperature", molecules=50, duration="5 ns"))
+    >>> ab.show(ab.run("temperature", molecules=50, duration="5 ns", save_molecules=False))
     Traceback (most recent call last):
     atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("temperature", save_molecules=True).
     """

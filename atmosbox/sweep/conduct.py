@@ -61,7 +61,8 @@ def folder_of(path: str | os.PathLike[str]) -> Path:
     >>> str(folder_of("condensation-sweep.nc"))
     'condensation-sweep'
     """
-    return Path(path).with_suffix("")
+    name = Path(path)
+    return name.parent / (name.stem if name.suffix else f"{name.name}-runs")
 
 
 def sweep(

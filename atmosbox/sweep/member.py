@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,12 +10,16 @@ from typing import NamedTuple
 from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError, FileError
 from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.output_lock import BusyError
 from atmosbox.scene.parameter import Value
 from atmosbox.simulation.preparation import Prepared, build, prepare
 from atmosbox.simulation.restart import check_alike, read_state
 from atmosbox.simulation.runner import execute
 
 __all__ = ["Done", "Task", "compile_first", "run"]
+
+PATIENCE = 30.0
+"""Longest time to wait for another process that is at the same run [s]."""
 
 
 class Task(NamedTuple):
@@ -67,6 +72,7 @@ def run(task: Task, progress: Callable[[float, str], None] | None = None) -> Don
                     check_alike(restart, prepared)
                 except FileError:  # damaged, or of another version: the run begins again
                     restart = None
+            _begin(checkpoint)
             execute(prepared, checkpoint=checkpoint, progress=progress, restart=restart)
         except FileError:
             raise
@@ -79,6 +85,20 @@ def run(task: Task, progress: Callable[[float, str], None] | None = None) -> Don
             what = "This is a bug in atmosbox" if where is None else f"{where} cannot be run"
             reason = f"{what} ({type(error).__name__}: {error})."
     return Done(task, " ".join(reason.split()), tuple(sorted({str(each.message) for each in caught})))
+
+
+def _begin(checkpoint: Checkpoint) -> None:
+    """Take the file of a run; wait for a worker of a sweep that was stopped, which may still be at it."""
+    until = time.monotonic() + PATIENCE
+    while True:
+        try:
+            checkpoint.begin()
+        except BusyError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(0.1)
+        else:
+            return
 
 
 def compile_first(task: Task) -> None:

@@ -107,24 +107,24 @@ def test_a_pool_of_one_molecule_is_a_pool(pool, humidity):
 
 
 def test_the_work_of_the_piston_is_that_of_a_constant_pressure_but_for_what_it_is_late():
-    prepared = runner.prepare("evaporation", {"molecules": 3000, "pool": 600})
-    setup = runner.build(prepared)
-    start = prepared.module._start(prepared.settings, ideal=False)
-    parcel = setup.parcel
-    pressure = prepared.settings.si.pressure / setup.scale.pressure
-
-    def enthalpy():
-        return sum(parcel.energy()) + parcel.condensed_energy + pressure * parcel.number / parcel.open_density
-
-    before, volume = enthalpy(), parcel.number / parcel.open_density
-    until = 5.0e-9 / setup.scale.time
-    parcel.advance(until)
-    work = pressure * (parcel.number / parcel.open_density - volume)
-    assert abs(work) > 50.0
-    kelvin = (enthalpy() - before) / (3.5 * 3000 + theory.LIQUID_HEAT_CAPACITY * 600) * prepared.settings.si.temperature
-    # always a loss, and less than what is stated
-    assert -start.loss(until) < kelvin < 0.0
-    assert start.loss(until) < 0.15
+    losses = []
+    for seed in range(1, 5):
+        prepared = runner.prepare("evaporation", {"molecules": 3000, "pool": 600, "seed": seed})
+        setup = runner.build(prepared)
+        start = prepared.module._start(prepared.settings, ideal=False)
+        parcel = setup.parcel
+        pressure = prepared.settings.si.pressure / setup.scale.pressure
+        before, volume = sum(parcel.energy()) + parcel.condensed_energy, parcel.number / parcel.open_density
+        until = 5.0e-9 / setup.scale.time
+        parcel.advance(until)
+        work = pressure * (parcel.number / parcel.open_density - volume)
+        assert abs(work) > 50.0
+        gained = sum(parcel.energy()) + parcel.condensed_energy - before + work
+        capacity = 3.5 * 3000 + theory.LIQUID_HEAT_CAPACITY * 600
+        losses.append(-gained / capacity * prepared.settings.si.temperature)
+    # the piston fluctuates; on average it is a loss, and less than what is stated: the scatter is 0.02 K
+    assert 0.0 < np.mean(losses) < start.loss(until) < 0.15
+    assert np.std(losses, ddof=1) < 0.04
 
 
 def test_those_that_leave_have_the_binding_energy_and_the_flux_of_a_vapour():

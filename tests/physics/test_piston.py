@@ -138,7 +138,7 @@ def test_a_fast_piston_feels_the_pressure_of_those_that_catch_up_with_it(gas, sp
         impulses.append(box.wall_impulse[5])
     mean, error = mean_and_error(impulses)
     exact = number / height * time * float(kinetic_gas.piston_pressure_ratio(speed, 1.0, 1.0))
-    assert error / exact < 0.02
+    assert error / exact < 0.025
     assert abs(mean - exact) <= 4.0 * error
     assert abs(mean / (number / height * time) - 1.0) > 0.3
     assert area * height == pytest.approx(box.volume - 100.0 * speed * time)
