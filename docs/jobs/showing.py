@@ -54,7 +54,7 @@ def live(found: Findings) -> None:
         shown.goto(served.stdout.readline().strip())
         shown.wait_for_selector("body[data-playing=true]", timeout=120_000)
         shown.wait_for_timeout(15_000)
-        slider = shown.locator("input[type=range][aria-label=temperature]")
+        slider = shown.get_by_role("slider", name="temperature").first
         slider.fill("10")
         slider.dispatch_event("change")
         shown.wait_for_timeout(15_000)

@@ -61,7 +61,7 @@ def analytic(found: Findings) -> None:
         outcome = runner.execute(runner.prepare("lifting-sounding", {"seed": seed}))
         by_name = {each.name: each for each in outcome.headlines}
         for each in outcome.headlines:
-            if not each.agrees:
+            if each.agrees is False:
                 found.failures.append(f"seed {seed}: {each.label} is {each.value:.6g}, theory says {each.theory:.6g}")
         shown = [("cape", 1.0, 0), ("cin", 1.0, 0), ("lfc", 100.0, 0), ("el", 100.0, 1)]
         runs.append(

@@ -19,8 +19,9 @@ SCENES = ("lifting-dry", "atmosphere", "temperature-large")
 
 
 def measured(scene: str):
-    """Return what ``atmosbox tradeoff`` has written for a scene."""
-    return read(FOLDER / f"tradeoff-{scene}.nc")
+    """Return what ``atmosbox tradeoff`` has written for a scene, without engines that atmosbox no longer has."""
+    data = read(FOLDER / f"tradeoff-{scene}.nc")
+    return data.isel(rung=[str(each).partition(":")[0] in engines.names() for each in data.engine.values])
 
 
 def percent(one) -> float:
@@ -55,8 +56,6 @@ def trade(found: Findings) -> None:
             way = ", ".join([str(data.engine.values[k]), *(f"{name}={value}" for name, value in changed.items())])
             rows.setdefault(way, row)
         found.table(head, [[f"`{way}`", *row] for way, row in rows.items()], key=scene)
-        if scene == "atmosphere":
-            found.number("drift", rounded(float(np.nanmax(np.abs(data.energy_drift.values)))))
         found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
 
 
