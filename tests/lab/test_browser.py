@@ -261,7 +261,7 @@ def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_aga
 
 def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkeypatch):
     monkeypatch.setattr(bench, "ROW", 7)  # words; twice as many are enough at the start, and not for long
-    settings = {"molecules": 600, "water": 200}
+    settings = {"molecules": 600, "water": 200, "seed": 4}
     shown = lab("nuclei", settings)
     shown.ask(type="frames", value=6)
     setup = build(prepare("nuclei", settings))
