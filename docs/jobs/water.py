@@ -49,7 +49,7 @@ def saturation(found: Findings) -> None:
     """Let vapour condense at six temperatures, until both rates are equal at the prescribed vapour pressure."""
     rows = []
     for celsius, own in RUNS.items():
-        settings = {"temperature": celsius, "molecules": 4000, "area": 12.0, **own}
+        settings = {"temperature": celsius, "molecules": 6000, "area": 12.0, **own}
         outcome = runner.execute(runner.prepare("condensation", settings))
         stated = next(each for each in outcome.headlines if each.name == "mean_relative_humidity")
         pressure = next(each for each in outcome.headlines if each.name == "mean_water_vapor_partial_pressure")
