@@ -159,4 +159,6 @@ def test_a_column_that_starts_uniform_falls_warms_and_comes_to_the_profile_of_eq
 
 def test_a_run_too_short_to_settle_has_no_headlines():
     assert run(molecules=60, duration=5.0).headlines == ()
-    assert len(run(molecules=60, duration=5.0, start="equilibrium").headlines) == 5
+    # so few molecules tell all but the scale height, which they know worse than to a tenth
+    known = {each.name for each in run(molecules=60, duration=5.0, start="equilibrium").headlines}
+    assert known == {"mean_surface_pressure", "weight_of_the_air", "mean_temperature", "mean_height"}
