@@ -152,8 +152,6 @@ def run(
     floor: Literal["heat-bath", "isolated"] = "heat-bath",
     start: Literal["uniform", "equilibrium", "bottom"] = "uniform",
     rotation: bool = False,
-    stirring: float | str = 0.0,
-    exchange: Literal["parcels", "molecules"] = "parcels",
     plane: bool = False,
     duration: float | str = 400.0,
     seed: int | str = 1,
@@ -169,8 +167,6 @@ def run(
     floor: kind of floor: heat bath, or smooth so that no heat passes; heat-bath or isolated
     start: where the molecules start: spread evenly, in the profile of equilibrium, or near the floor; uniform or equilibrium or bottom
     rotation: whether molecules rotate, as those of air do; on or off
-    stirring: how many times as much heat stirring carries as molecules conduct; 0 for air at rest; 0 to 1000
-    exchange: what is exchanged when stirred: parcels that do work as they expand, or molecules one by one, which do none; parcels or molecules
     plane: whether the air is a plane of discs; on or off
     duration: how long to watch, in units of H/√(kT/m), with the scale height H: 29 s in air at 15 °C; 1 to 100000
     seed: seed of the random numbers; 0 to 9223372036854775807

@@ -6,16 +6,11 @@ e every 8.4 km; the means leave out the first half hour. Each molecule falls fre
 neither collects on the floor nor escapes. The molecules hit the floor, and the force on the floor minus that on the
 ceiling is the weight of the air.
 
-The temperature becomes the same at all heights, because nothing stirs or heats the air. A molecule that rises loses
+The temperature becomes the same at all heights, because the air is left alone. A molecule that rises loses
 speed, but only fast ones get high: fewer arrive, and their mean energy is the same. A real atmosphere is heated from
-below and stirred, and therefore cools with height; left alone, without sun and radiation, it would become isothermal
-like this one in some 100,000 years. The figure shows both.
-
-With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on its
-environment, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much
-faster than molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. With stirring other
-defaults apply: molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in
-equilibrium, duration 300.
+below: it turns over, and therefore cools with height. Left alone, without sun and radiation, it would become
+isothermal like this one in some 100,000 years. The figure shows both. The scene ``convection`` heats the air from
+below.
 
 Modelled: spheres in uniform gravity, exact parabolas, hard if they are 5,000 or fewer (of more, those that collide
 are drawn at random, as often as spheres would meet), periodic sides, a floor that is a heat bath or smooth, a smooth
@@ -38,7 +33,6 @@ from atmosbox.engine import (
     Periodic,
     RandomNumbers,
     Specular,
-    Stirring,
     maxwell_velocities,
     rotational_energies,
 )
@@ -54,12 +48,10 @@ from atmosbox.scene import (
     SceneSettings,
     Series,
     Setup,
-    Stirrer,
     setting,
 )
 from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.headline import CHANCE_ALONE
-from atmosbox.scene.instruments.stirrer import weighted_slope
 from atmosbox.scene.knob import gravity, wall_temperature
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import average_beside
@@ -81,30 +73,6 @@ FILLED = 3.0
 """Height in scale heights that a uniform start fills with molecules."""
 JUMP = 0.563
 """Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas without collisions."""
-
-STIRRED = {
-    "rotation": True,
-    "height": 11.0,
-    "knudsen": 0.02,
-    "molecules": 4000,
-    "start": "equilibrium",
-    "duration": 300.0,
-}
-"""Defaults of a stirred column: molecules that rotate, a troposphere, and little conduction."""
-PARCEL, LIFTS = 0.05, (0.15, 0.35)
-"""Share of all molecules that are in a parcel, and its least and greatest lift, as shares of all molecules."""
-TURN = 0.05
-"""Time between two sets of exchanges, in units of H/√(kT/m), with the scale height H."""
-INNER = 0.1
-"""Share of the molecules at floor and ceiling where the lapse rate is not measured: few parcels come so far."""
-COLDEST = 0.3
-"""Least temperature of the adiabat at the ceiling, over that of the floor: higher up there is hardly any air."""
-FOURIER = 8.0
-"""Share, per Knudsen number, by which stirred air at most conducts less heat than Fourier's law says.
-
-From a kinetic equation of the column that includes the layers without collisions at floor and ceiling (it is in
-tests/oracle): 1.5 to 7.7 for Knudsen numbers of 0.02 to 0.33, stirring of 0.3 to 300, with rotation and without.
-"""
 
 ladder = (
     Series("exact", "duration", (50, 100, 200, 400), {"molecules": 3000}),
@@ -146,19 +114,6 @@ class Settings(SceneSettings):
         choices=("uniform", "equilibrium", "bottom"),
     )
     rotation: bool = setting(False, "", "whether molecules rotate, as those of air do")
-    stirring: float = setting(
-        0.0,
-        "1",
-        "how many times as much heat stirring carries as molecules conduct; 0 for air at rest",
-        low=0.0,
-        high=1000.0,
-    )
-    exchange: str = setting(
-        "parcels",
-        "",
-        "what is exchanged when stirred: parcels that do work as they expand, or molecules one by one, which do none",
-        choices=("parcels", "molecules"),
-    )
     plane: bool = setting(False, "", "whether the air is a plane of discs")
     duration: float = setting(
         400.0,
@@ -168,50 +123,15 @@ class Settings(SceneSettings):
         high=1e5,
     )
 
-    def __init__(self, /, **values: Any) -> None:
-        declared = {parameter.name: parameter for parameter in self.describe()}["stirring"]
-        stirred = declared.parse(values.get("stirring", declared.default))
-        super().__init__(**(STIRRED | values if stirred else values))
-
     @property
     def freedom(self) -> int:
         """Degrees of freedom of a molecule."""
         return (2 if self.plane else 3) + (2 if self.rotation else 0)
 
-    @property
-    def lapse(self) -> float:
-        r"""Lapse rate of the adiabat, :math:`g / c_p` [K/m]."""
-        lapse: float = 2.0 * DRY_AIR.molecule_mass * self.si.gravity / ((self.freedom + 2) * BOLTZMANN)
-        return lapse
-
     def check(self) -> None:
-        """Refuse a column that cannot be stirred, and discs that rotate."""
-        if self.stirring and self.plane:
-            raise SettingError("stirring", self.stirring, "is for air in space, not in a plane", "give --set plane=off")
+        """Refuse discs that rotate."""
         if self.plane and self.rotation:
             raise SettingError("rotation", True, "is not for the discs of a plane", "give --set rotation=off")
-        if not self.stirring:
-            return
-        if self.floor == "isolated":
-            raise SettingError(
-                "stirring",
-                self.stirring,
-                "heats the air, and an isolated floor keeps it in",
-                "give --set floor=heat-bath",
-            )
-        least = math.ceil(10.0 / PARCEL)
-        if self.molecules < least:
-            raise SettingError(
-                "molecules", self.molecules, "are too few to stir in parcels", f"give --set molecules={least} or more"
-            )
-        most = math.floor((1.0 - COLDEST) * self.si.temperature / self.lapse / 100.0) / 10.0
-        if self.height > most:
-            raise SettingError(
-                "height",
-                f"{self.height:g} km",
-                "is higher than stirred air reaches",
-                f"give --set height={most:g} or less",
-            )
 
 
 class Column:
@@ -229,13 +149,9 @@ class Column:
         self.dimensions = 2 if settings.plane else 3
         self.freedom = settings.freedom
         n = settings.molecules
-        self.width = 1.0
-        if settings.stirring:
-            # a narrow column: with ten molecules in a cell its side is a mean free path
-            self.width = rounded(min(math.sqrt(settings.knudsen**3 * n / (10.0 * self.height)), 1.0))
         held = -math.expm1(-min(self.height, 700.0))
-        self.per_area = n / self.width ** (self.dimensions - 1)
-        density = n / (self.width ** (self.dimensions - 1) * held)
+        self.per_area = float(n)
+        density = n / held
         if settings.plane:
             # mean free path of a thin gas of discs: Gass, D. M. (1971), J. Chem. Phys. 54, 1898
             self.diameter = 1.0 / (2.0 * math.sqrt(2.0) * density * settings.knudsen)
@@ -249,14 +165,6 @@ class Column:
         self.scale = Scale(self.scale_height, DRY_AIR.molecule_mass, self.energy, weight)
         self.bottom = 0.5 * self.diameter
         self.top = self.height - self.bottom
-        self.works = settings.exchange == "parcels"
-        # the eddy conductivity n f/2 K is ``stirring`` times that of the molecules: each exchange makes a share
-        # PARCEL / (1 - PARCEL - lift) of the molecules away from the ends rise, and as many sink; K is half their mean
-        # square
-        thin = law.thin_gas_conductivity(1.0, 1.0, self.diameter, self.freedom)
-        lift = np.linspace(*LIFTS, 101)
-        square = PARCEL * float(np.mean(lift**2 / (1.0 - PARCEL - lift))) * (self.per_area / density) ** 2
-        self.rate = rounded(2.0 * settings.stirring * thin / (self.freedom * density * square))
 
     @property
     def memory(self) -> float:
@@ -274,8 +182,6 @@ class Column:
         the temperature of the floor than the molecules that hit it. The jump of the temperature is that along 2.127
         mean free paths (Sone 2007), 0.563 of the jump from the hits alone; this value is used for discs, too.
         """
-        if self.rate:
-            return self.stirred().memory
         a, d, turns = min(self.height, 700.0), self.dimensions, self.freedom - self.dimensions
         held = -math.expm1(-a)
         capacity = 0.5 * self.freedom + 1.0 - a * a * math.exp(-a) / held**2
@@ -287,14 +193,6 @@ class Column:
         conducted = capacity * self.per_area * above / held**2 / (thin / math.sqrt(math.pi))
         total: float = leaves + conducted
         return total
-
-    def stirred(self, kT: float = 1.0, gravity: float = 1.0) -> law.StirredColumn:
-        """Return the profile of the stirred column above a floor of the temperature kT."""
-        ends = self.bottom, self.top
-        return law.stirred_column(
-            self.per_area, *ends, kT, gravity, self.diameter,
-            freedom=self.freedom, parcel=PARCEL, lifts=LIFTS, rate=self.rate, works=self.works,
-        )  # fmt: skip
 
     def settling(self, settings: Settings) -> float:
         r"""Return the time in which the column relaxes after a start out of equilibrium [reduced time].
@@ -361,15 +259,13 @@ class Column:
 
 def _settled(column: Column, settings: Settings) -> int:
     """Return the number of frames until equilibrium."""
-    if settings.start == "equilibrium" and not settings.stirring:
+    if settings.start == "equilibrium":
         return SETTLE
     return min(max(math.ceil(column.settling(settings) / settings.duration * FRAMES), SETTLE), FRAMES - 1)
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the column runs unless the user names another: dsmc can stir, exact has discs."""
-    if settings.stirring:
-        return "dsmc"
+    """Return the engine on which the column runs unless the user names another: exact for discs and few molecules."""
     return "exact" if settings.plane else suited(settings.molecules)
 
 
@@ -379,7 +275,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     n = settings.molecules
     plane = settings.plane
     rng = RandomNumbers(settings.seed)
-    length = (column.width, 2.0 * column.diameter if plane else column.width, column.height)
+    length = (1.0, 2.0 * column.diameter if plane else 1.0, column.height)
     diameter = np.full(n, column.diameter)
     sides = (True, True, False)
     if settings.start == "equilibrium":
@@ -391,13 +287,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     more: dict[str, Any] = {}
     if settings.rotation:
         more |= {"rotation": 2.0, "rotational_energy": rotational_energies(1.0, np.full(n, 2.0), rng)}
-    stirrer: tuple[Stirrer, ...] = ()
-    if settings.stirring:
-        least, most = (round(lift * n) for lift in LIFTS)
-        more["stirring"] = Stirring(round(PARCEL * n), least, most, column.rate, TURN, column.works)
-        reached = column.stirred().height
-        inner = round(INNER * len(reached))
-        stirrer = (Stirrer(LAYERS, float(reached[inner]), float(reached[-1 - inner])),)
     parcel = engine.make(
         position,
         velocity,
@@ -412,16 +301,15 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     scale = column.scale
     settled = _settled(column, settings)
-    km = column.width * scale.length / 1000.0
-    box = f"{km:.2f} km wide, periodic, {settings.height:g} km high"
+    box = f"{scale.length / 1000.0:.2f} km wide, periodic, {settings.height:g} km high"
     width = f"{'discs' if plane else 'molecules'} {column.diameter * scale.length:.{1 if plane else 0}f} m wide"
     return Setup(
         parcel,
         scale,
         settings.duration,
         FRAMES,
-        (Air("floor"), Layers(LAYERS, column.memory), *stirrer),
-        samples=4 if settings.stirring else 8,
+        (Air("floor"), Layers(LAYERS, column.memory)),
+        samples=8,
         settle=settled,
         time_unit="s",
         facts={
@@ -439,7 +327,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             f"{settled * settings.duration / FRAMES * scale.time / 60.0:.0f} are left out of the means",
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
-            **_stirring_facts(settings, column),
         },
         knobs=(
             wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
@@ -450,47 +337,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
 
 
-def _stirring_facts(settings: Settings, column: Column) -> dict[str, str]:
-    """Return the lines of the model card about the stirring."""
-    if not settings.stirring:
-        return {}
-    lift = f"by {100.0 * LIFTS[0]:g} to {100.0 * LIFTS[1]:g} % of the mass of the air"
-    what = f"parcels of {100.0 * PARCEL:g} % of it rise and sink {lift}" if column.works else f"molecules swap {lift}"
-    return {
-        "stirring": f"{what}, each molecule {2.0 * PARCEL * column.rate:.3g} times in the time H/√(kT/m); "
-        f"that carries {settings.stirring:g} times as much heat as molecules conduct",
-        "adiabat": f"g/c_p = {1000.0 * settings.lapse:.2f} K/km",
-    }
-
-
-def _stirred_theory(
-    dataset: "xr.Dataset", column: Column, settings: Settings, kT: float, gravity: float
-) -> dict[str, np.ndarray]:
-    """Return the profiles of the stirred column, and the adiabat through the middle of the air."""
-    scale = column.scale
-    profile = column.stirred(kT, gravity)
-    edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
-    middle, thick = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
-    nodes = len(profile.height)
-    room = column.per_area / nodes * profile.temperature / profile.pressure
-    below = np.append(profile.height - 0.5 * room, profile.height[-1] + 0.5 * room[-1])
-    density = np.diff(np.interp(edges, below, np.linspace(0.0, column.per_area, nodes + 1))) / thick
-    temperature = np.interp(middle, profile.height, profile.temperature)
-    half = nodes // 2
-    lapse = 2.0 * gravity / (column.freedom + 2.0)
-    return {
-        "number_density_theory": density * scale.number_density,
-        "air_density_theory": density * scale.mass_density,
-        "layer_pressure_theory": density * temperature * scale.pressure,
-        "layer_temperature_theory": temperature * scale.temperature,
-        "layer_temperature_adiabat": (profile.temperature[half] - lapse * (middle - profile.height[half]))
-        * scale.temperature,
-        "layer_temperature_at_rest": np.full(len(thick), kT * scale.temperature),
-    }
-
-
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the barometric law, the same with walls and excluded volume, and the stirred profiles if it is stirred."""
+    """Return the barometric law, and the same with walls and excluded volume."""
     column = Column(settings, used(dataset))
     scale = column.scale
     kT = column.equilibrium_kT(dataset, settings)
@@ -503,7 +351,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     within = np.divide(density, reached, out=np.zeros_like(density), where=reached > 0.0)
     pressure = column.pressure(within, kT) * reached
     light = column.textbook_pressure(0.5 * (edges[1:] + edges[:-1]), kT, pull)
-    found = {
+    return {
         "number_density_theory": density * scale.number_density,
         "air_density_theory": density * scale.mass_density,
         "layer_pressure_theory": pressure * scale.pressure,
@@ -512,38 +360,6 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         "number_density_barometric": light / kT * scale.number_density,
         "layer_pressure_barometric": light * scale.pressure,
     }
-    return found | (_stirred_theory(dataset, column, settings, kT, pull) if settings.stirring else {})
-
-
-def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headline:
-    """Return the lapse rate of the stirred air, and that of theory in the same layers with the same weights."""
-    profile = column.stirred()
-    inner = round(INNER * len(profile.height))
-    low, high = profile.height[inner], profile.height[-1 - inner]
-    edges = late.height_bnds.values / column.scale.length
-    inside = (edges[:, 0] >= low) & (edges[:, 1] <= high)
-    expected = -weighted_slope(
-        late.height.values[inside],
-        late.layer_temperature_theory.values[inside],
-        late.number_density_theory.values[inside],
-    )
-    memory = column.memory * FRAMES / settings.duration
-    measured = average_beside(late.lapse_rate.values, _energy(late), memory)
-    # the lapse rate is nearly S/(1 + S) of the adiabat's, and S goes as one over the conductivity, which is at least 0
-    reached = settings.stirring / (1.0 + settings.stirring)
-    unknown = min(FOURIER * settings.knudsen * reached, 1.0) / (1.0 + settings.stirring)
-    # and as a parcel keeps its centre-of-mass motion, three of its degrees of freedom do no work
-    unknown += 3.0 / (settings.freedom * PARCEL * settings.molecules)
-    return Headline.of_mean(
-        "lapse_rate_of_the_air",
-        "lapse rate of the stirred air",
-        measured,
-        expected,
-        "K m-1",
-        "K/km",
-        tolerance=unknown * settings.lapse,
-        reason="molecules that fly so far conduct less than Fourier's law says, and few of them make a parcel",
-    )
 
 
 def _energy(late: "xr.Dataset") -> np.ndarray:
@@ -553,7 +369,7 @@ def _energy(late: "xr.Dataset") -> np.ndarray:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return pressure, temperature and scale height of the air, or its weight and lapse rate if it is stirred."""
+    """Return pressure, temperature and scale height of the air."""
     column = Column(settings, used(dataset))
     settled = _settled(column, settings)
     late = dataset.isel(elapsed_time=slice(settled, None))
@@ -565,7 +381,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     expected = column.per_area * column.scale.pressure
     # floor minus ceiling differ from the weight by the change of momentum, whose variance is N m kT at either end
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[settled, -1], [0, 1]])[0]) / column.scale.time
-    chance = math.sqrt(2.0 * column.per_area * kT / column.width ** (column.dimensions - 1)) / lasted
+    chance = math.sqrt(2.0 * column.per_area * kT) / lasted
     weight_headline = Headline(
         "weight_of_the_air",
         float(weight.mean()),
@@ -577,8 +393,6 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         "hPa",
         "surface pressure minus pressure at the top",
     )
-    if settings.stirring:
-        return weight_headline, _lapse_rate(late, column, settings)
     energy = _energy(late)
     memory = column.memory * FRAMES / settings.duration
     temperature = average_beside(late.air_temperature.values, energy, memory)
@@ -650,13 +464,12 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return density, pressure and temperature against height."""
-    stirs = bool(settings.stirring)
 
     def against_height(
-        title: str, name: str, theory: str, others: tuple[Line, ...], label: str, unit: str, scale: str, headline: str
+        title: str, name: str, theory: str, other: Line, label: str, unit: str, scale: str, headline: str
     ) -> Panel:
         measured = Line(name, "height", "molecules", error=f"{name}_se")
-        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), *others
+        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), other
         return Panel(
             "profile",
             title,
@@ -669,31 +482,20 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headlines=(headline,),
         )
 
-    smooth, barometric = "stirred" if stirs else "with walls and size", "barometric law"
+    smooth, barometric = "with walls and size", "barometric law"
     thin = Line("number_density_barometric", "height", barometric, "reference")
     light = Line("layer_pressure_barometric", "height", barometric, "reference")
-    stirred = Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment")
-    title, curve = "At rest it is isothermal", "isothermal"
-    others: tuple[Line, ...] = (stirred,)
-    number = "mean_temperature"
-    if stirs:
-        works = settings.exchange == "parcels"
-        title = "Stirred, it cools with height" if works else "Single molecules do no work: it is isothermal"
-        standard = Line("layer_temperature_standard", "height", "standard atmosphere", "environment")
-        rest = Line("layer_temperature_at_rest", "height", "at rest", "environment")
-        adiabat = Line(
-            "layer_temperature_adiabat", "height", f"adiabat, {1000.0 * settings.lapse:.1f} K/km", "reference"
-        )
-        curve, others = "stirring and conduction", (adiabat, standard, rest)
-        number = "lapse_rate_of_the_air"
+    real = Line("layer_temperature_standard", "height", "standard atmosphere, heated from below", "environment")
     return (
         against_height(
-            "Density falls with height", "number_density", smooth, (thin,), "number density", "", "log",
-            "weight_of_the_air" if stirs else "scale_height",
+            "Density falls with height", "number_density", smooth, thin, "number density", "", "log", "scale_height"
         ),
         against_height(
-            "Pressure falls with height", "layer_pressure", smooth, (light,), "pressure", "hPa", "log",
-            "weight_of_the_air" if stirs else "mean_surface_pressure",
+            "Pressure falls with height", "layer_pressure", smooth, light, "pressure", "hPa", "log",
+            "mean_surface_pressure",
         ),
-        against_height(title, "layer_temperature", curve, others, "temperature", "degC", "linear", number),
+        against_height(
+            "At rest it is isothermal", "layer_temperature", "isothermal", real, "temperature", "degC", "linear",
+            "mean_temperature",
+        ),
     )  # fmt: skip

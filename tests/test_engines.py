@@ -145,7 +145,7 @@ def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
 
 
 MOVES, SPINS, FALLS, LIQUID = STORES
-WALLS, PISTON, GRAVITY, SCHEME, BATH, ATTRACTION, STIRRING = GIVEN
+WALLS, PISTON, GRAVITY, SCHEME, BATH, ATTRACTION = GIVEN
 SMALL = {"molecules": 200}
 DRY = {"molecules": 200, "ascent": 50}
 LIFTED = {"molecules": 300, "ascent": 20}
@@ -171,8 +171,6 @@ PARTS = [
         {MOVES, FALLS, WALLS, SCHEME},
     ),
     ("atmosphere", "dsmc", SMALL | {"rotation": True}, {}, {MOVES, SPINS, FALLS, WALLS}),
-    ("atmosphere", "", {"stirring": 50}, {}, {MOVES, SPINS, FALLS, WALLS, STIRRING}),
-    ("atmosphere", "", {"stirring": 50, "exchange": "molecules"}, {}, {MOVES, SPINS, FALLS, WALLS}),
     ("attraction", "", CLUMP, {}, {MOVES, FALLS, BATH}),
     ("attraction", "", CLUMP, {"attraction": 0.5}, {MOVES, FALLS, BATH, ATTRACTION}),
     ("attraction", "", CLUMP | {"bath": "none", "air": 0.1}, {}, {MOVES, FALLS}),

@@ -186,7 +186,6 @@ CASES = [
     Case("elastic-collisions", {"duration": 10.0}, 24, ROUNDING),
     Case("atmosphere", {"molecules": 100, "duration": 100.0}, 24, long=True),  # the dense one above covers it
     Case("atmosphere", {"molecules": 100, "duration": 100.0, "plane": True}, 24, long=True),
-    Case("atmosphere", {"molecules": 400, "duration": 60.0, "stirring": 20.0}, 24, long=True),
     Case("attraction", {"molecules": 150, "density": 0.08, "temperature": 200.0, "duration": 2.0}, 12, COUNTS),
     Case("attraction", {"molecules": 200}, 24, long=True),
     Case("attraction", {"molecules": 200, "start": "drop", "density": 0.15, "bath": "none"}, 24, UNKNOWN, long=True),

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from atmosbox.engine.core.refusal import CoarseStepWarning, PackingError, RefusedError, StalledError
     from atmosbox.engine.core.schedule import Constant, Ramp, Schedule, Steps
     from atmosbox.engine.core.walls import HeatBath, Periodic, Piston, Specular, Wall
-    from atmosbox.engine.dsmc.stirring import Stirring
     from atmosbox.engine.exact.parcelset import ParcelSet
     from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
     from atmosbox.engine.start.clearing import clear_of_drops
@@ -45,7 +44,6 @@ _HOMES = {
     "core.refusal": "CoarseStepWarning PackingError RefusedError StalledError",
     "core.schedule": "Constant Ramp Schedule Steps",
     "core.walls": "HeatBath Periodic Piston Specular Wall",
-    "dsmc.stirring": "Stirring",
     "exact.parcelset": "ParcelSet",
     "liquid.substance": "Drops Liquid Mist Pool Substance",
     "start.clearing": "clear_of_drops",
@@ -84,7 +82,6 @@ __all__ = [
     "SquareWell",
     "StalledError",
     "Steps",
-    "Stirring",
     "Substance",
     "Wall",
     "clear_of_drops",

@@ -71,7 +71,6 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(_TIME, ("work_by_piston", "J", "work done on the molecules by the piston"),
                 ("work_by_gravity", "J", "energy given to the molecules by changes of gravity"),
-                ("work_by_stirring", "J", "work done on the molecules by stirring"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
     **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, which was changed by hand"),
                 ("pool_open_share", "1", "share of the pool that is open, which was changed by hand"),
@@ -211,14 +210,6 @@ VARIABLES: dict[str, Variable] = {
         ("layer_temperature_standard", "K", "temperature of the standard atmosphere"),
         cell_methods="height: mean",
     ),
-    **_declared(
-        ("height",),
-        ("layer_temperature_at_rest", "K", "temperature of the same column at rest"),
-        ("layer_temperature_adiabat", "K", "temperature of the adiabat through the middle of the air"),
-        cell_methods="height: mean",
-    ),
-    **_declared(_TIME, ("lapse_rate", "K m-1", "lapse rate within the stirred air", "air_temperature_lapse_rate"),
-                cell_methods=_MEAN, difference=True),
     # Speeds, bin by bin
     **_declared(("speed",), ("speed_probability_density", "s m-1", "share of molecules per unit of speed"),
                 cell_methods="speed: mean"),

@@ -44,7 +44,6 @@ if TYPE_CHECKING:
         Readings,
         Slab,
         Speeds,
-        Stirrer,
         Water,
         wall_laws,
     )
@@ -59,7 +58,7 @@ _HOMES = {
     "headline": "Headline",
     "instruments": (
         "LAWS Air Clusters Discs DropSizes Environment Instrument Layers Leaving "
-        "Lift Mixing MoistLift Molecules Nuclei Readings Slab Speeds Stirrer Water wall_laws"
+        "Lift Mixing MoistLift Molecules Nuclei Readings Slab Speeds Water wall_laws"
     ),
     "panels": "Line Panel",
     "settings": "SceneSettings setting",
@@ -95,7 +94,6 @@ __all__ = [
     "Setup",
     "Slab",
     "Speeds",
-    "Stirrer",
     "Water",
     "block_average",
     "setting",

@@ -21,7 +21,6 @@ wall_law            the energy of molecules that leave a wall; the heat between 
 barometric          how the density of a gas decreases with height
 column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
-stirred_column      how the temperature of a stirred column falls with height
 lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
 environment         the environment of a parcel: lapse rates, pressures and heights
@@ -160,7 +159,6 @@ from atmosbox.theory.simple_fluid import (
     well_vapor_pressure,
 )
 from atmosbox.theory.standard_atmosphere import isa_pressure, isa_temperature
-from atmosbox.theory.stirred_column import StirredColumn, stirred_column, thin_gas_conductivity
 from atmosbox.theory.unlike_gases import diffusivity_factor, mixing_wave
 from atmosbox.theory.vapor_number import VaporNumber, isolated_vapor_number, isothermal_vapor_number
 from atmosbox.theory.wall_law import (
@@ -200,7 +198,6 @@ __all__ = [
     "IsobaricWater",
     "ParcelPath",
     "SimpleFluid",
-    "StirredColumn",
     "VaporNumber",
     "adiabatic_index",
     "barometric_density",
@@ -284,9 +281,7 @@ __all__ = [
     "square_well_second_virial",
     "square_well_third_virial",
     "staying_energy_density",
-    "stirred_column",
     "temperature_noise",
-    "thin_gas_conductivity",
     "vapor_pressure",
     "virtual_temperature",
     "water_surface_tension",

@@ -22,7 +22,6 @@ from atmosbox.engine import (
     RefusedError,
     Specular,
     SquareWell,
-    Stirring,
     Substance,
     random_positions,
 )
@@ -30,7 +29,6 @@ from atmosbox.engine.core.packing import refuse_impossible
 from atmosbox.engine.core.walls import WALL_NAMES, new_walls
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
-from atmosbox.engine.dsmc.stirred_dsmc_parcel import StirredDsmcParcel
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
@@ -116,15 +114,6 @@ def damp(centres=((4.0, 4.0, 4.0),), **changes):
     return box(DropParcelSet)(**({"liquid": drops(centres)} | facts | changes))
 
 
-def stirred(walls=COLUMN, **changes):
-    facts = {"parcel": 60, "least": 90, "most": 210, "rate": 40.0, "interval": 0.1}
-    place = np.full((600, 3), 0.2)
-    return StirredDsmcParcel(
-        place, np.zeros((600, 3)), length=(0.4, 0.4, 1.0), walls=walls, diameter=0.0, gravity=1.0,
-        stirring=Stirring(**(facts | changes)),
-    )  # fmt: skip
-
-
 exact, stepped, dsmc = map(box, (ParcelSet, SteppedParcel, DsmcParcel))
 
 NUMBERS = [
@@ -154,11 +143,6 @@ NUMBERS = [
     (dsmc, "occupancy", "occupancy", (0.5, NAN)),
     (dsmc, "cell", "cell", (0.0, 0.001)),
     (dsmc, "threads", "threads", (0, 1.5)),
-    (stirred, "parcel", "parcel of the stirring", (5,)),
-    (stirred, "least", "least lift of the stirring", (50,)),
-    (stirred, "most", "most lift of the stirring", (50,)),
-    (stirred, "rate", "rate of the stirring", (-1.0,)),
-    (stirred, "interval", "interval of the stirring", (0.0,)),
     (substance, "mass", "mass of the substance", (0.0, NAN, "heavy")),
     (substance, "binding_energy", "binding_energy of the substance", (-1.0,)),
     (substance, "heat_capacity", "heat_capacity of the substance", (0.0,)),
@@ -257,7 +241,6 @@ def test_what_an_engine_of_steps_cannot_do_is_refused_with_what_it_can():
         *(({name: [0, 2]}, "the molecules of dsmc are all alike") for name in ("diameter", "rotation")),
         ({"mass": [1, 2]}, "the molecules of dsmc are all alike"),
     )
-    refuses(stirred, ({"most": 580}, "do not fit"), ({"walls": (*COLUMN[:5], Piston())}, "floor and a ceiling"))
 
 
 def test_what_no_box_with_liquid_can_have_is_refused():

@@ -146,11 +146,6 @@ class Account(ABC):
         return 0.0
 
     @property
-    def stirring_work(self) -> float:
-        """Work that stirring has done on the molecules since the start [energy]; 0 without it."""
-        return 0.0
-
-    @property
     def numerical_heat(self) -> float:
         """Energy that the engine's scheme itself has made, apart from heat and work [energy]; 0 for an exact engine."""
         return 0.0

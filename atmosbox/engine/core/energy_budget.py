@@ -21,7 +21,6 @@ GIVEN = {
     "numerical_heat": "numerical_heat",
     "heat_from_bath": "bath_heat",
     "work_by_attraction": "attraction_work",
-    "work_by_stirring": "stirring_work",
 }
 """Energy given to a box since its start, with the property of the box that holds it."""
 
@@ -32,8 +31,8 @@ def residual(terms: Mapping[str, ArrayLike], start: float | None = None) -> NDAr
     Parameters
     ----------
     terms
-        The terms by name, at one time or at several; those that a box lacks may be missing. The last axis of
-        ``heat_from_wall`` is that of the walls.
+        The terms by name, at one time or at several; those that a box lacks may be missing, and what is not in `STORES`
+        was given. The last axis of ``heat_from_wall`` is that of the walls.
     start
         The energy stored at the start; None for what the first of several times implies.
 
@@ -46,7 +45,7 @@ def residual(terms: Mapping[str, ArrayLike], start: float | None = None) -> NDAr
     [0.0, 0.0]
     """
     stores = [np.asarray(terms[name], float) for name in STORES if name in terms]
-    given = {name: np.asarray(terms[name], float) for name in GIVEN if name in terms}
+    given = {name: np.asarray(value, float) for name, value in terms.items() if name not in STORES}
     each, sizes = ([made(value) for value in given.values()] for made in (np.asarray, np.abs))
     if "heat_from_wall" in given:
         place = list(given).index("heat_from_wall")

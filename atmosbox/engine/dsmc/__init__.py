@@ -8,6 +8,4 @@
 `dsmc`                one time step
 `dsmc_parcel`         the box, advanced by this method
 `moist_dsmc_parcel`   the box of moist air, advanced by this method
-`stirring`            parcels that change places in a column, with the work of each
-`stirred_dsmc_parcel` the column that is stirred
 """

@@ -38,8 +38,6 @@ class Engine:
         Function that returns the class of its parcels with a liquid in them, if there is one.
     attracting
         Function that returns the class of its parcels of molecules that attract each other, if there is one.
-    stirred
-        Function that returns the class of its stirred columns, if there is one.
     presets
         Names that stand for several options at once.
     """
@@ -52,7 +50,6 @@ class Engine:
     reference: str = ""
     moist: Callable[[Liquid], type[Parcel]] | None = None
     attracting: Callable[[], type[Parcel]] | None = None
-    stirred: Callable[[], type[Parcel]] | None = None
     presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
 
 
@@ -95,12 +92,6 @@ def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
     if isinstance(liquid, Drops):
         raise SettingError("engine", "dsmc", "has no drops with a size of their own", "give --engine exact, or a mist")
     return MoistDsmcParcel
-
-
-def _stirred_dsmc() -> type[Parcel]:
-    from atmosbox.engine.dsmc.stirred_dsmc_parcel import StirredDsmcParcel
-
-    return StirredDsmcParcel
 
 
 def _number(name: str, default: float, low: float, high: float, help: str) -> Parameter:
@@ -172,7 +163,6 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 ideal=True,
                 reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
                 moist=_moist_dsmc,
-                stirred=_stirred_dsmc,
             ),
         )
     }

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine import Liquid, Parcel, RandomBath, RefusedError, Snapshot, SquareWell, Stirring
+from atmosbox.engine import Liquid, Parcel, RandomBath, RefusedError, Snapshot, SquareWell
 from atmosbox.engine.core.parcel import Arrangement, Array
 
 __all__ = ["DescribedParcel"]
@@ -25,8 +25,6 @@ class DescribedParcel(Parcel):
         The liquid in the box; it is not used.
     well, species, strength, bath
         The attraction of molecules that attract each other; not used either.
-    stirring
-        How the air is stirred; not used either.
 
     Examples
     --------
@@ -47,7 +45,6 @@ class DescribedParcel(Parcel):
         species: ArrayLike = 0,
         strength: float = 1.0,
         bath: RandomBath | None = None,
-        stirring: Stirring | None = None,
         **box: Unpack[Arrangement],
     ) -> None:
         super().__init__(position, velocity, **box)

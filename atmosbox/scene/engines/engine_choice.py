@@ -85,8 +85,7 @@ class EngineChoice:
         RefusedError
             If the engine cannot do what the box requires.
         SettingError
-            If the box has a ``liquid``, a ``well`` about its molecules, or ``stirring``, and the engine has no class
-            for it.
+            If the box has a ``liquid`` or a ``well`` about its molecules, and the engine has no class for it.
         """
         kind: Callable[[], Callable[..., Parcel]] = self.engine.parcel
         if "liquid" in box:
@@ -98,15 +97,6 @@ class EngineChoice:
             if self.engine.attracting is None:
                 raise SettingError("engine", str(self), "cannot simulate attraction", "give --engine exact")
             kind = self.engine.attracting
-        if "stirring" in box:
-            if self.engine.stirred is None:
-                raise SettingError(
-                    "engine",
-                    str(self),
-                    "cannot stir, for spheres that change places would overlap",
-                    "give --engine dsmc",
-                )
-            kind = self.engine.stirred
         if self.described:
             from atmosbox.scene.engines.described_parcel import DescribedParcel
 

@@ -19,7 +19,6 @@ from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
 from atmosbox.scene.instruments.nucleus import Nuclei
 from atmosbox.scene.instruments.slab import Slab
 from atmosbox.scene.instruments.speeds import Speeds
-from atmosbox.scene.instruments.stirrer import Stirrer
 from atmosbox.scene.instruments.water import Water
 
 __all__ = [
@@ -41,7 +40,6 @@ __all__ = [
     "Readings",
     "Slab",
     "Speeds",
-    "Stirrer",
     "Water",
     "wall_laws",
 ]
