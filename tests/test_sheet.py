@@ -544,6 +544,9 @@ def test_pages_are_written_beside_their_sheet_or_nothing_is(tmp_path):
     assert told.stdout.split() == [str(path) for path in (out, *pages)]
     stored = re.search(r'id="stored"[^>]*>([^<]+)<', pages[1].read_text(encoding="utf-8"))[1]
     assert b"mass_ratio=1000.0 --seed 1" in gzip.decompress(base64.b64decode(stored))
+    # a second sheet uses the same pages
+    again = CliRunner().invoke(app, [*asked[:-1], str(tmp_path / "again.md")])
+    assert again.exit_code == 0, again.output
 
 
 def test_a_sheet_for_pages_is_refused_where_its_runs_have_none(tmp_path):

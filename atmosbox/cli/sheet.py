@@ -74,12 +74,15 @@ def sheet(
 
 
 def _pages(made: Worksheet, folder: Path, force: bool) -> list[Path]:
-    """Write the page of each run beside the sheet; all paths are checked before the first page is written."""
+    """Write the page of each run beside the sheet, unless it is there; all paths are checked before one is written."""
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.lab.lab_file import lab_text
 
-    paths = [check_writable(folder / run.page, force) for run in made.runs]
-    texts = [lab_text(run.prepared, others=False) for run in made.runs]
-    for path, text in zip(paths, texts, strict=True):
-        write_whole(path, text.encode("utf-8"))
-    return paths
+    pages = {folder / run.page: lab_text(run.prepared, others=False).encode("utf-8") for run in made.runs}
+    # the page of the same run is the same file each time, so a second sheet uses the one that is there
+    missing = {path: page for path, page in pages.items() if not path.is_file() or path.read_bytes() != page}
+    for path in missing:
+        check_writable(path, force)
+    for path, page in missing.items():
+        write_whole(path, page)
+    return list(pages)
