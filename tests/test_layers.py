@@ -59,8 +59,8 @@ LAYERS = {
 }
 """One row for each package; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
-DOORS = ("by_reference", "compiler", "constant_modes", "lanes")
-"""The files that may use the compiler: those that compile kernels, and those that write single instructions."""
+DOORS = ("compiler",)
+"""The file of the engine that may use numba."""
 
 
 class Imports(ast.NodeVisitor):
@@ -141,7 +141,7 @@ def refusal(importer, name, late):
     else:
         thing, allowed = target[0], layer.libraries.split()
         if home == "engine" and thing in ("numba", "llvmlite") and importer[-1] not in DOORS:
-            return f"only {DOORS} call numba"
+            return f"only {DOORS[0]} calls numba"
     if thing in layer.lazily.split():
         return None if late else "only inside a function"
     if thing in allowed or (target[0] == "atmosbox" and "*" in allowed):
@@ -186,7 +186,7 @@ def test_every_library_the_package_imports_is_a_dependency():
     imported = {name.split(".")[0] for _, found in imports(ROOT).values() for _, name, _ in found}
     used = {name.lower() for name in imported - sys.stdlib_module_names - {"atmosbox", "a computed name"}}
     used = {{"markdown_it": "markdown-it-py"}.get(name, name).replace("_", "-") for name in used}
-    carried = {"llvmlite", "rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
+    carried = {"rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
     extras = {
         re.match(r"[\w-]+", line).group().lower()
         for extra in ("movie", "cluster")

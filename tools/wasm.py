@@ -24,11 +24,8 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 import numba
-from numba.core import codegen, compiler
-from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import cpu_target
 
-from atmosbox.engine.core.constant_modes import KernelCompiler
+from atmosbox.engine.core.compiler import LlvmText
 from atmosbox.engine.core.state import Modes
 from atmosbox.lab.bench import bench
 from atmosbox.lab.kernels.kernel_table import kernels
@@ -39,62 +36,6 @@ from atmosbox.simulation.preparation import prepare
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint,+mutable-globals,+multivalue,+simd128"
 STACK = 65_536
-
-
-class Source:
-    """A context in which numba writes the LLVM code of kernels, but neither optimises it nor makes machine code.
-
-    Code from which numba has made machine code is specific to this machine and must not be compiled for another one.
-    So boxes are built in another process, and no kernel can be called within this context.
-    """
-
-    def __init__(self) -> None:
-        self._text: dict[str, str] = {}
-        self._usual: list[tuple[type, str, object]] = []
-
-    def __enter__(self) -> "Source":
-        def keep(library) -> None:
-            self._text[library.name] = str(library._final_module)
-
-        nothing = {
-            (codegen.CPUCodeLibrary, "_optimize_functions"): lambda library, module: None,
-            (codegen.CPUCodeLibrary, "_optimize_final_module"): keep,
-            (codegen.JITCPUCodegen, "_add_module"): lambda made, module: None,
-            (codegen.JITCPUCodegen, "set_env"): lambda made, name, env: None,
-            (codegen.JITCodeLibrary, "_finalize_specific"): lambda library: None,
-            (codegen.JITCodeLibrary, "get_pointer_to_function"): lambda library, name: 1,
-        }
-        for (owner, name), instead in nothing.items():
-            self._usual.append((owner, name, getattr(owner, name)))  # fails if a new numba lacks this method
-            setattr(owner, name, instead)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for owner, name, usual in self._usual:
-            setattr(owner, name, usual)
-
-    def of(self, kernel, types) -> tuple[str, str]:
-        """Return the code of a kernel for some types of arguments, with all functions that it calls, and its name."""
-        flags = compiler.Flags()
-        flags.no_cpython_wrapper = True
-        flags.no_cfunc_wrapper = True
-        flags.nrt = False
-        flags.error_model = "numpy"
-        cpu_target.typing_context.refresh()
-        cpu_target.target_context.refresh()
-        made = compiler.compile_extra(
-            cpu_target.typing_context,
-            cpu_target.target_context,
-            kernel.py_func,
-            types,
-            None,
-            flags,
-            {},
-            pipeline_class=KernelCompiler,
-        )
-        with global_compiler_lock:
-            made.library._ensure_finalized()
-        return self._text[made.library.name], made.fndesc.llvm_func_name
 
 
 def machine() -> llvm.TargetMachine:
@@ -184,7 +125,7 @@ def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]
 def module_of(modes: Modes, wells: bool, types: dict[str, tuple]) -> bytes:
     """Return the module for one set of modes."""
     target = machine()
-    with Source() as source:
+    with LlvmText() as source:
         works = kernels(modes, wells=wells)
         return link({name: object_of(*source.of(works[name], types[name]), name, target) for name in types})
 

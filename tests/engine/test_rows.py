@@ -1,4 +1,4 @@
-"""No contact is missed: the glance at copies leaves out no collision partner, and the next contact is the right one.
+"""No contact is missed: the quick test of copies leaves out no partner, and the next contact is the right one.
 
 Whole boxes are not compared with another run, which would diverge by chaos, but with the first contact of all pairs, in
 double precision, computed from the engine's own state.
@@ -14,18 +14,18 @@ from hypothesis import strategies as st
 
 from atmosbox.engine import HeatBath, ParcelSet, Piston, Specular
 from atmosbox.engine.core.jit import COMPILED, kernel
-from atmosbox.engine.exact.glance import CLOSING, LANES, PATH, SLACK, glance
+from atmosbox.engine.exact.screening import BATCH, CLOSING, PATH, SLACK, screen
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 SMOOTH = (Specular(),) * 6
 
 
 @kernel(entry=True)
-def glance_at(values, place, velocity, since, slack, within, seen):
+def screen_at(values, place, velocity, since, slack, within, seen):
     """Record which of the copies are found, each checked by a separate molecule."""
     for row in range(values.shape[0]):
-        seen[row] = glance(
-            values.reshape(-1), row * 7 * LANES, False, (place[row, 0], place[row, 1], place[row, 2]),
+        seen[row] = screen(
+            values.reshape(-1), row * 7 * BATCH, False, (place[row, 0], place[row, 1], place[row, 2]),
             (velocity[row, 0], velocity[row, 1], velocity[row, 2]), since[row], (slack[0], slack[1], slack[2]),
             within[row],
         )  # fmt: skip
@@ -44,10 +44,10 @@ def unit(random, number):
     st.sampled_from([0.0, 1e-3, 1.0]),
     st.sampled_from([1.0, 1e-6, 1e-25]),
 )
-def test_a_glance_leaves_out_nobody_who_is_met(seed, width, head_on, fall, slow):
+def test_the_quick_test_leaves_out_no_molecule_that_is_met(seed, width, head_on, fall, slow):
     """Pairs are made at the moment of contact, and moved back in time to a moment at which they share a cell."""
     random = np.random.default_rng(seed)
-    number = 40 * LANES
+    number = 40 * BATCH
     top = 2.0
     duration = PATH * width / top
     gravity = fall * 0.5 * top / duration
@@ -80,36 +80,36 @@ def test_a_glance_leaves_out_nobody_who_is_met(seed, width, head_on, fall, slow)
     fits = (np.abs(x).max(axis=1) <= width) & (np.abs(y).max(axis=1) <= width)
     fall_now = 0.5 * g * then[:, None] ** 2, g * then[:, None]
     fits &= (np.sum((v + fall_now[1]) ** 2, axis=1) <= top**2) & (np.sum((w + fall_now[1]) ** 2, axis=1) <= top**2)
-    values = np.full((number, 7, LANES), 1e9, np.float32)
-    lane = random.integers(LANES, size=number)
+    values = np.full((number, 7, BATCH), 1e9, np.float32)
+    slot = random.integers(BATCH, size=number)
     frame = w + fall_now[1]
     copy = np.concatenate([y + fall_now[0] - frame * then[:, None], frame], axis=1)
-    values[np.arange(number)[:, None], np.arange(6), lane[:, None]] = copy
+    values[np.arange(number)[:, None], np.arange(6), slot[:, None]] = copy
     seen = np.zeros(number, np.int64)
     slack = [1.0 + SLACK * width, SLACK * width**2, 4.0 * SLACK * width * top]
     assert CLOSING == 2
-    glance_at(
+    screen_at(
         values, (x + fall_now[0]).astype(np.float32), (v + fall_now[1]).astype(np.float32), then.astype(np.float32),
         np.array(slack, np.float32), (back * (1.0 + 1e-9)).astype(np.float32), seen,
     )  # fmt: skip
     assert fits.any() or slow < 1.0 or fall == 1.0
-    assert ((seen >> lane) & 1 == 1)[fits].all()
+    assert ((seen >> slot) & 1 == 1)[fits].all()
 
 
-def test_a_glance_passes_over_most_who_are_not_met():
+def test_the_quick_test_leaves_out_most_molecules_that_are_not_met():
     random = np.random.default_rng(1)
     number, width = 4000, 9.0
-    values = np.zeros((number, 7, LANES), np.float32)
-    values[:, :3] = random.uniform(-width, width, (number, 3, LANES))
-    values[:, 3:6] = random.normal(size=(number, 3, LANES))
+    values = np.zeros((number, 7, BATCH), np.float32)
+    values[:, :3] = random.uniform(-width, width, (number, 3, BATCH))
+    values[:, 3:6] = random.normal(size=(number, 3, BATCH))
     seen = np.zeros(number, np.int64)
     slack = np.array([1.0 + SLACK * width, SLACK * width**2, 4.0 * SLACK * width * 4.0], np.float32)
     place, velocity = (random.normal(size=(number, 3)).astype(np.float32) for _ in range(2))
-    glance_at(values, place, velocity, np.zeros(number, np.float32), slack, np.full(number, np.inf, np.float32), seen)
+    screen_at(values, place, velocity, np.zeros(number, np.float32), slack, np.full(number, np.inf, np.float32), seen)
     r, v = values[:, :3] - place[..., None], values[:, 3:6] - velocity[..., None]
     b, u, c = (r * v).sum(axis=1), (v * v).sum(axis=1), (r * r).sum(axis=1) - 1.0
     met = (b < 0.0) & (b * b >= u * c)
-    named = (seen[:, None] >> np.arange(LANES)) & 1 == 1
+    named = (seen[:, None] >> np.arange(BATCH)) & 1 == 1
     assert named[met].all()
     assert named.sum() < 1.02 * met.sum()
     assert met.mean() < 0.05

@@ -24,8 +24,6 @@
 `course`        how far along its planned ascent a parcel is
 `lift`          a piston that follows a pressure
 `jit`           how a kernel is compiled when it is first called
-`compiler`      how numba compiles a kernel
+`compiler`      how numba compiles a kernel: all that goes beyond its documented interface
 `kernel_cache`  where the machine code is kept, and reports of compilations
-`by_reference`  NamedTuples that kernels pass on by reference
-`constant_modes`  the flags of a set of modes as constants
 """

@@ -4,8 +4,7 @@
 `cells`        which molecules can meet
 `calendar`     which event is the next one
 `encounter`    the change of velocity at a contact or a wall hit
-`glance`       a quick test of eight molecules at once: which of them can be met at all
-`lanes`        the same test in vector instructions
+`screening`    a quick test of eight molecules at once: which of them can be met at all
 `rows`         the contents of the rows of cells
 `search`       the search for a molecule's next contact
 `prediction`   the next events of a molecule: contact, cell boundary, wall

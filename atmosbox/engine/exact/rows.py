@@ -1,7 +1,7 @@
 """The rows of cells, where they hold copies of trajectories: which molecule has which place in which row.
 
 Beside the indices of its members, the row of a cell holds a copy of the trajectory of each in single precision,
-relative to the centre of the cell and to a common time, the start of the epoch. So all data that a `glance` needs for
+relative to the centre of the cell and to a common time, the start of the epoch. So all data that `screen` needs for
 eight members lie in one piece of memory. The row of a cell is ``stride`` words of four bytes, whole lines of 64 bytes::
 
     | occupied . . . | names | x | y | z | vx | vy | vz | extent | names | x | ...
@@ -34,7 +34,7 @@ from atmosbox.engine.core.jit import POSITIVE, kernel, lowest_bit
 from atmosbox.engine.core.pair import extent
 from atmosbox.engine.core.state import PLACE_OFFSET, Copies, Motion
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
-from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, PATH, SLACK, SPEEDS, SQUARE
+from atmosbox.engine.exact.screening import BATCH, CLOSING, DISTANCE, PATH, SLACK, SPEEDS, SQUARE
 
 __all__ = [
     "FEWEST", "LONGEST", "MORE", "MOST", "START", "STOP", "TOP_SPEED", "centre_of", "copies_in_block", "copies_of",
@@ -50,7 +50,7 @@ One word of 64 bits tells which are occupied.
 """
 START, STOP, TOP_SPEED, LONGEST = range(4)
 """The numbers of an epoch: its start and its end [time], the top speed V [length/time], its greatest length [time]."""
-_PLACE, _SPEED, _EXTENT = LANES, 4 * LANES, 7 * LANES
+_PLACE, _SPEED, _EXTENT = BATCH, 4 * BATCH, 7 * BATCH
 _SLOW = 1e-12
 """Smallest speed of which copies are made [length/time]."""
 _DILUTE, _DENSE = 0.05, 0.2
@@ -109,7 +109,7 @@ def copies_of(
 
 @kernel(plain=True)
 def _farthest(edge, k, wraps):
-    """Return the largest distance along an axis of a member of cell k from its centre: W of `glance` [length].
+    """Return the largest distance along an axis of a member of cell k from its centre: W of `screening` [length].
 
     A member may also be anywhere in a neighbour of the cell.
     """
@@ -182,13 +182,13 @@ def start_of(bit, slots, cells, modes):
 @kernel
 def _length_of_block(modes):
     """Return the number of words in a block of a row."""
-    return 8 * LANES if modes.mixed else 7 * LANES
+    return 8 * BATCH if modes.mixed else 7 * BATCH
 
 
 @kernel
 def _name_of(place, modes):
     """Return the word of a row that holds the index of the molecule in a place."""
-    return _HEAD + place // LANES * _length_of_block(modes) + place % LANES
+    return _HEAD + place // BATCH * _length_of_block(modes) + place % BATCH
 
 
 @kernel
@@ -200,7 +200,7 @@ def copies_in_block(start, block, modes):
 @kernel
 def number_of_places(cells, modes):
     """Return the number of places of a row."""
-    return (cells.stride - _HEAD) // _length_of_block(modes) * LANES
+    return (cells.stride - _HEAD) // _length_of_block(modes) * BATCH
 
 
 @kernel
@@ -273,11 +273,11 @@ def write_copy(i, bit, start, path, centre, radius, copies, modes):
     first = start + _name_of(place, modes)
     value = copies.value
     value[first + _PLACE] = path.x - centre[0]
-    value[first + _PLACE + LANES] = path.y - centre[1]
-    value[first + _PLACE + 2 * LANES] = path.z - centre[2]
+    value[first + _PLACE + BATCH] = path.y - centre[1]
+    value[first + _PLACE + 2 * BATCH] = path.z - centre[2]
     value[first + _SPEED] = path.vx
-    value[first + _SPEED + LANES] = path.vy
-    value[first + _SPEED + 2 * LANES] = path.vz
+    value[first + _SPEED + BATCH] = path.vy
+    value[first + _SPEED + 2 * BATCH] = path.vz
     if modes.mixed:
         value[first + _EXTENT] = extent(radius)
 
@@ -342,7 +342,7 @@ def own_place(i, bit, copies):
 
 @kernel
 def _new_epoch(now, fastest, usual, copies, gravity):
-    """Begin an epoch for molecules of this greatest speed and root mean square speed: see `glance` for its bounds.
+    """Begin an epoch for molecules of this greatest speed and root mean square speed: see `screening` for its bounds.
 
     A few molecules much faster than the others do not shorten the epoch: their copies are NaN.
     """

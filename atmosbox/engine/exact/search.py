@@ -13,7 +13,6 @@ from atmosbox.engine.core.jit import kernel, lowest_bit
 from atmosbox.engine.core.pair import approach, extent, predict, reach
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
-from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, SQUARE, glance
 from atmosbox.engine.exact.rows import (
     START,
     TOP_SPEED,
@@ -28,6 +27,7 @@ from atmosbox.engine.exact.rows import (
     start_of,
     write_copy,
 )
+from atmosbox.engine.exact.screening import BATCH, CLOSING, DISTANCE, SQUARE, screen
 
 __all__ = ["CONTACT", "Found", "search"]
 
@@ -35,14 +35,14 @@ CONTACT = 6
 """Which event comes first: 0 to 5 a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact."""
 
 
-_OTHERS = (1 << 64 - LANES) - 1
+_OTHERS = (1 << 64 - BATCH) - 1
 """The bits that remain in a word of occupied places when those of one block are shifted out."""
 
 
 class Seeker(NamedTuple):
     """A molecule that searches for partners.
 
-    The time, its `Motion` then and its radius; for `glance`, how much higher it is in the falling frame [length],
+    The time, its `Motion` then and its radius; for `screen`, how much higher it is in the falling frame [length],
     and, in single precision, its velocity in that frame, the time since the start of the epoch, and the slack.
     """
 
@@ -153,9 +153,9 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
     left = occupied
     while left != 0:
         first = copies_in_block(start, block, modes)
-        seen = glance(copies.value, first, modes.mixed, place, seeker.velocity, seeker.since, seeker.slack, within)
-        named |= seen << block * LANES
-        left = (left >> LANES) & _OTHERS
+        seen = screen(copies.value, first, modes.mixed, place, seeker.velocity, seeker.since, seeker.slack, within)
+        named |= seen << block * BATCH
+        left = (left >> BATCH) & _OTHERS
         block += 1
     named &= occupied
     # these are tested in double precision; the image of a member is the one nearest to the centre of the cell

@@ -2,7 +2,7 @@ r"""A quick test of eight members of a row at once: which of them may be met at 
 
 Most pairs in a cell miss each other, and to find that out is most of the work of a search. The processor takes eight
 single-precision numbers in one or two instructions, so the rows of cells hold copies of trajectories in single
-precision (`rows`), and `glance` tells which of eight may be met before a given time. It may name one that is not met,
+precision (`rows`), and `screen` tells which of eight may be met before a given time. It may name one that is not met,
 but it never leaves out one that is. The exact test of those that it names is made in double precision.
 
 **Why none is left out.** Take a pair that shares the cell from now until it meets, after :math:`\tau \le T`, at the
@@ -49,9 +49,9 @@ import numpy as np
 
 from atmosbox.engine.core.jit import COMPILED, Kernel
 
-__all__ = ["CLOSING", "DISTANCE", "LANES", "PATH", "SLACK", "SPEEDS", "SQUARE", "TINY", "glance"]
+__all__ = ["BATCH", "CLOSING", "DISTANCE", "PATH", "SLACK", "SPEEDS", "SQUARE", "TINY", "screen"]
 
-LANES = 8
+BATCH = 8
 """Number of members tested together: an AVX2 register holds as many; elsewhere they are taken by twos or fours."""
 PATH = 64.0
 """Longest flight of a copy in an epoch, in widths W: VH / W above."""
@@ -65,7 +65,7 @@ TINY = 1e-30
 """A squared product [length^4/time^2] far above the smallest number of single precision: see the module's docstring."""
 
 
-def glance(values, first, mixed, place, velocity, since, slack, within):
+def screen(values, first, mixed, place, velocity, since, slack, within):
     """Return which of eight copies may be met; the module's docstring has the proof.
 
     Parameters
@@ -91,25 +91,25 @@ def glance(values, first, mixed, place, velocity, since, slack, within):
     int64
         Bit k is set if the copy ``first + k`` may be met.
     """
-    lanes = values[int(first) : int(first) + 7 * LANES].reshape(7, LANES) if mixed else None
-    if lanes is None:
-        lanes = values[int(first) : int(first) + 6 * LANES].reshape(6, LANES)
-    r = lanes[:3] - np.array(place)[:, None] + lanes[3:6] * since
-    v = lanes[3:6] - np.array(velocity)[:, None]
-    reach = slack[0] + (lanes[6] if mixed else np.float32(0.0))
+    copies = values[int(first) : int(first) + 7 * BATCH].reshape(7, BATCH) if mixed else None
+    if copies is None:
+        copies = values[int(first) : int(first) + 6 * BATCH].reshape(6, BATCH)
+    r = copies[:3] - np.array(place)[:, None] + copies[3:6] * since
+    v = copies[3:6] - np.array(velocity)[:, None]
+    reach = slack[0] + (copies[6] if mixed else np.float32(0.0))
     a, b, c = (v * v).sum(axis=0), (r * v).sum(axis=0), (r * r).sum(axis=0) - (reach * reach + slack[1])
     near = ~(a * c > b * b + np.float32(TINY))
     turn = a * within + b
     soon = ~(turn <= 0.0) | ~(within * (b + turn) + c >= 0.0)
     found = near & ~(b >= slack[2]) & soon
-    return sum(1 << lane for lane in np.flatnonzero(found).tolist())
+    return sum(1 << k for k in np.flatnonzero(found).tolist())
 
 
 if COMPILED:
 
-    def _lanes() -> Any:
-        from atmosbox.engine.exact import lanes
+    def _vectors() -> Any:
+        from atmosbox.engine.core import compiler
 
-        return lanes.glance_of(LANES, TINY)
+        return compiler.screen_of(BATCH, TINY)
 
-    glance = Kernel(glance, _lanes)
+    screen = Kernel(screen, _vectors)
