@@ -441,6 +441,7 @@ def run(
     bath: Literal["random", "walls", "none"] = "random",
     air: float | str = 0.0,
     substance: Literal["argon", "nitrogen", "methane"] = "argon",
+    heating: float | str = 0.0,
     duration: float | str = 1.6,
     seed: int | str = 1,
 ) -> RunDataset:
@@ -454,6 +455,7 @@ def run(
     bath: what keeps the temperature; random or walls or none
     air: density of molecules that attract none, over the critical one; 0 to 1
     substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
+    heating [K ns-1]: how fast the thermostat becomes warmer; 0 for a constant temperature; 0 K ns-1 to 1000 K ns-1
     duration [ns]: how long to watch; 0.0001 ns to 10000 ns
     seed: seed of the random numbers; 0 to 9223372036854775807
     """

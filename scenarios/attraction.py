@@ -13,11 +13,15 @@ hydrogen bonds, which have directions and which this model lacks. The law of its
 
 At the start of the default run there is several times as much vapour as is stable: it is cooled so suddenly that drops
 form everywhere at once, and merge (a quench). A vapour that is barely supersaturated waits for one rare nucleus.
+
+With ``heating`` the thermostat around a drop becomes warmer, and the heat that it gives is counted: the temperature
+rises, hardly rises while the drop evaporates, and rises again. Other defaults then apply: 400 molecules, a drop at
+85 K, density 0.1, 3 ns.
 """
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +29,7 @@ from atmosbox import theory as law
 from atmosbox.engine import (
     HeatBath,
     Periodic,
+    Ramp,
     RandomBath,
     RandomNumbers,
     Specular,
@@ -76,6 +81,12 @@ GRAVITY = 0.08
 """Gravity of a pool [depth / (mass diameter)]: the density of the vapour falls by 1/e over some twelve diameters."""
 TALL = 4.0
 """Height of the box of a slab or a pool, in widths."""
+HEATED = {"start": "drop", "molecules": 400, "density": 0.1, "temperature": 85.0, "duration": 3.0}
+"""Defaults of a drop that is heated."""
+EVAPORATING = 0.25, 0.75
+"""Shares of the molecules in the vapour between which the drop is said to evaporate."""
+GONE = 0.05
+"""Share of the molecules in the largest drop below which only vapour is left."""
 THIN = 0.03
 """Density [diameter^-3] up to which the pressure of a gas is compared with its first three virial coefficients."""
 
@@ -96,10 +107,25 @@ class Settings(SceneSettings):
         "substance that sets the size and attraction of the molecules",
         choices=("argon", "nitrogen", "methane"),
     )
+    heating: float = setting(
+        0.0, "K ns-1", "how fast the thermostat becomes warmer; 0 for a constant temperature", low=0.0, high=1000.0
+    )
     duration: float = setting(1.6, "ns", "how long to watch", low=1e-4, high=1e4)
 
+    def __init__(self, /, **values: Any) -> None:
+        declared = {parameter.name: parameter for parameter in self.describe()}["heating"]
+        heated = declared.parse(values.get("heating", declared.default))
+        super().__init__(**(HEATED | values if heated else values))
+
     def check(self) -> None:
-        """Refuse a liquid where there is none, and a box too small for two surfaces."""
+        """Refuse a liquid where there is none, a box too small for two surfaces, and heat without a thermostat."""
+        if self.heating and (self.start != "drop" or self.bath != "random" or self.air):
+            name, value, only = next(
+                (name, getattr(self, name), only)
+                for name, only in (("start", "drop"), ("bath", "random"), ("air", 0.0))
+                if getattr(self, name) != only
+            )
+            raise SettingError(name, value, "is not for heating", f"give --set {name}={only}, or --set heating=0")
         warmth = _warmth(self)
         if self.start != "vapour" and not warmth < 0.97 * law.WELL_CRITICAL_TEMPERATURE:
             most = 0.97 * law.SIMPLE_FLUIDS[self.substance].critical_temperature * self.attraction
@@ -187,6 +213,16 @@ def _walled(settings: Settings) -> bool:
     return settings.start == "pool" or settings.bath == "walls"
 
 
+def _course(settings: Settings) -> float | Ramp:
+    """Return the temperature of the thermostat over the run [depth], constant or rising."""
+    scale = _scale(settings)
+    if not settings.heating:
+        return scale.reduced_temperature(settings.temperature)
+    last = settings.temperature + settings.heating * settings.duration
+    first, last = (scale.reduced_temperature(kelvin) for kelvin in (settings.temperature, last))
+    return Ramp(first, last, 0.0, settings.si.duration / scale.time)
+
+
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the molecules in their box."""
     scale = _scale(settings)
@@ -209,7 +245,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         well=SquareWell(RANGE, [[1.0, 0.0], [0.0, 0.0]]),
         species=np.repeat([0, 1], [n, air]),
         strength=settings.attraction,
-        bath=RandomBath(kT, rate) if settings.bath == "random" else None,
+        bath=RandomBath(_course(settings), rate) if settings.bath == "random" else None,
         seed=settings.seed,
     )
     slab = (Slab(n),) if settings.start in ("slab", "pool") else ()
@@ -261,7 +297,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     frames = dataset.sizes["elapsed_time"]
     found = {}
     if settings.bath != "none":
-        found["air_temperature_theory"] = np.full(frames, settings.temperature)
+        found["air_temperature_theory"] = settings.temperature + settings.heating * dataset.elapsed_time.values
     if "normal_pressure" in dataset:
         saturated = float(law.well_vapor_pressure(_warmth(settings))) * settings.attraction * scale.pressure
         found["normal_pressure_theory"] = np.full(frames, saturated)
@@ -292,6 +328,8 @@ def _units_of_slab(scale: Scale) -> dict[str, float]:
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the drop, the vapour, temperature and pressure, or the properties of a slab and its vapour."""
+    if settings.heating:
+        return _of_heating(dataset, settings)
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
@@ -344,6 +382,76 @@ def _temperature(dataset: "xr.Dataset", settings: Settings) -> Headline:
         tolerance=heat / (each * touched),
         reason="heat still flows to the thermostat",
     )
+
+
+def _gas_energy(density: float, warmth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    r"""Return the energy of attraction of a molecule of a gas by B2 and B3 [depth], and the part that is due to B3.
+
+    From the virial series of the pressure, :math:`u = -T^2 (B_2' \rho + B_3' \rho^2 / 2)` with derivatives in T.
+    """
+    step = 1e-4
+    second, third = (
+        (virial(warmth + step) - virial(warmth - step)) / (2.0 * step)
+        for virial in (law.square_well_second_virial, law.square_well_third_virial)
+    )
+    triple = -0.5 * (warmth * density) ** 2 * third
+    return -(warmth**2) * density * second + triple, triple
+
+
+def _of_heating(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    r"""Return the heat capacity before the drop evaporates, the latent heat, and the heat capacity of the vapour.
+
+    A heat capacity is the slope of the heat over the temperature of the thermostat. The energy of N molecules has the
+    variance :math:`N (k T)^2 c` in equilibrium, with the heat capacity c of a molecule over k. In a vapour frames are
+    independent of each other; beside a drop, which exchanges molecules slowly, the energies at both ends are taken to
+    be off by their scatter. The latent heat is the slope of the energy of attraction over the number of molecules in
+    the vapour while the drop evaporates, plus kT for the work of making room.
+    """
+    scale, n = _scale(settings), settings.molecules
+    kT = (settings.temperature + settings.heating * dataset.elapsed_time.values) / scale.temperature
+    heat = dataset.heat_from_bath.values / scale.energy / n
+    share = dataset.vapor_molecule_count.values / n
+    drop = np.flatnonzero(dataset.largest_drop_molecule_count.values >= GONE * n)
+    first, last = (int(np.flatnonzero(np.append(share >= least, True))[0]) for least in EVAPORATING)
+    gone = int(drop[-1]) + 1 if len(drop) else 0
+    per_mole, each = scale.energy * AVOGADRO, BOLTZMANN * AVOGADRO
+    found = []
+
+    def capacity(name: str, label: str, value: float, error: float, theory: float | None, tolerance: float) -> None:
+        known = None if theory is None else theory * each
+        reason = "further virial coefficients are left out" if tolerance else ""
+        found.append(
+            Headline(name, value * each, error * each, known, tolerance * each, reason,
+                     "J mol-1 K-1", "J mol-1 K-1", f"heat capacity {label}")
+        )  # fmt: skip
+
+    def slope(x: np.ndarray, y: np.ndarray) -> float:
+        away = x - x.mean()
+        return float(away @ y) / float(away @ away)
+
+    if first >= BLOCKS:
+        value = slope(kT[:first], heat[:first])
+        scatter = math.sqrt(2.0 * max(value, 1.5) / n) * kT[:first].mean()
+        capacity("liquid_heat_capacity", "before the drop evaporates", value, scatter / np.ptp(kT[:first]), None, 0.0)
+    if last - first >= BLOCKS:
+        part = slice(first, last)
+        pulled = dataset.attraction_energy.values[part] / scale.energy / n
+        freed = share[part] - share[part].mean()
+        value = slope(share[part], pulled)
+        bent = np.polyval(np.polyfit(freed, pulled, 2), freed)  # of a smaller drop more is surface
+        rest = block_average(pulled - bent, BLOCKS // 2)
+        error = float(rest.standard_error) * math.sqrt(len(freed) / float(freed @ freed)) * per_mole
+        value, label = (value + float(kT[part].mean())) * per_mole, "latent heat L of the drop"
+        found.append(Headline("latent_heat", value, error, None, 0.0, "", "J mol-1", "kJ mol-1", label))
+    if len(kT) - gone >= BLOCKS:
+        warm = kT[gone:]
+        value, away = slope(warm, heat[gone:]), warm - warm.mean()
+        error = math.sqrt(max(value, 1.5) / n) * float(np.linalg.norm(away * warm)) / float(away @ away)
+        density = settings.density * law.WELL_CRITICAL_DENSITY
+        gas, triple = (settings.attraction * part for part in _gas_energy(density, warm / settings.attraction))
+        known, unknown = slope(warm, 1.5 * warm + gas), slope(warm, triple)
+        capacity("vapor_heat_capacity", "of the vapour", value, error, known, abs(unknown))
+    return tuple(found)
 
 
 def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
@@ -510,6 +618,21 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     return tuple(found)
 
 
+def _heating_panel(title: str) -> Panel:
+    """Return the panel of the temperature against the heat that was supplied."""
+    return Panel(
+        "line",
+        title,
+        (Line("heat_from_bath", "air_temperature", "molecules"),),
+        x_label="heat supplied",
+        x_unit="zJ",
+        y_label="temperature",
+        y_unit="K",
+        averages=50,
+        headlines=("latent_heat", "vapor_heat_capacity"),
+    )
+
+
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the drop, the energy, the temperature and the pressure; for a slab its profile."""
     grown = over_time(
@@ -563,4 +686,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         parts=50,
         headline="mean_virial_pressure",
     )
+    if settings.heating:
+        return (_heating_panel("Heat first warms the drop, then evaporates it"), grown, energies)
     return (grown, energies, warm, pressure)

@@ -176,6 +176,7 @@ PARTS = [
     ("attraction", "", CLUMP | {"bath": "none", "air": 0.1}, {}, {MOVES, FALLS}),
     ("attraction", "", CLUMP | {"bath": "walls"}, {}, {MOVES, FALLS, WALLS}),
     ("attraction", "", {"molecules": 200, "attraction": 0}, {}, {MOVES, BATH}),
+    ("attraction", "", {"molecules": 200, "heating": 100, "duration": "0.4 ns"}, {}, {MOVES, FALLS, BATH}),
     ("attraction", "", {"molecules": 300, "start": "slab", "density": 1.0}, {}, {MOVES, FALLS, BATH}),
     ("attraction", "", {"molecules": 300, "start": "pool", "density": 0.8}, {}, {MOVES, FALLS, BATH}),
     ("condensation", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
