@@ -482,7 +482,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headlines=(headline,),
         )
 
-    smooth, barometric = "with walls and size", "barometric law"
+    smooth, barometric = "finite column and molecules", "barometric law"
     thin = Line("number_density_barometric", "height", barometric, "reference")
     light = Line("layer_pressure_barometric", "height", barometric, "reference")
     real = Line("layer_temperature_standard", "height", "standard atmosphere, heated from below", "environment")

@@ -247,7 +247,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             log=True,
             parts=PARTS,
             headline="mean_water_vapor_partial_pressure",
-            theory="saturation, put in",
+            theory="saturation, prescribed",
         ),
         over_time(
             "In equilibrium both rates are equal",

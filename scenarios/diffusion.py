@@ -325,7 +325,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     return (
         over_time(
             "The difference decays",
-            {"mixing_amplitude": "slowest mode"},
+            {"mixing_amplitude": "left-right difference"},
             "difference",
             theory="theory",
             headline="diffusion_coefficient",

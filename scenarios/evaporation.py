@@ -305,7 +305,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         over_time(
             "Vapour pressure reaches saturation",
-            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, put in"},
+            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
             "vapour pressure",
             "hPa",
             log=True,

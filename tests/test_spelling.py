@@ -1,11 +1,21 @@
-"""Names and assignments as users spell them."""
+"""Names and assignments as users spell them, and the words with which users are told things."""
+
+import json
+import re
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.main import get_command
 
+from atmosbox import scenarios
+from atmosbox.cli import app
 from atmosbox.errors import SettingError
+from atmosbox.file.dataset import VARIABLES
 from atmosbox.scene.spelling import assignments, nearest
+
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def test_the_nearest_name_is_the_one_that_was_meant():
@@ -58,3 +68,77 @@ def test_any_text_is_an_assignment_or_refused_in_one_sentence(items):
     else:
         assert len(values) == len(items)
         assert all(values.values())
+
+
+WORDS = {
+    r"(?<!begin )anew": "again",
+    r"oftener": "more often",
+    r"as good as": "nearly",
+    r"put in(?! quotes)": "prescribed",
+    r"misfits?": "difference",
+    r"(?<!energy )ledger": "energy budget",
+    r"wish(es)?": "target",
+    r"glance": "a quick test",
+    r"lanes?": "numbers tested at once",
+    r"rungs?": "setting that was measured",
+    r"furniture|outlook|pulse|pens?": "the name of the thing itself",
+    r"random baths?|(?<!heat )baths? of": "thermostat, heat bath",
+    r"within error\?": "agrees?",
+    r"allowed: |\dσ *\+": "expected within",
+    r"slowest mode": "left-right difference",
+    r"with walls and size": "finite column and molecules",
+    r"in floors of": "area as a multiple of that of the floor",
+    r"than (it|the air) can hold": "than saturated air has",
+    r"no fault of": "no error of",
+    r"conspire": "extremely unlikely",
+    r"outrun": "faster than",
+    r"helps? out": "supplies part of",
+    r"hand(ed|s)? on": "carried from molecule to molecule",
+    r"out of nothing": "what it is made of",
+    r"among (its|their) like": "molecules of the same kind",
+    r"a matter of the": "depends on",
+    r"at the price of": "against",
+    r"and that is all": "and nothing else",
+    r"nothing (that )?stands still": "molecules still condense and evaporate",
+    r"check of neither": "tests nothing",
+}
+"""Words and turns of phrase that a first-year student has to guess at, and what to say."""
+
+
+def prose(text):
+    """Return a text without code, links, what jobs have put between marks, and what the maker of a sheet fills in."""
+    for part in (r"<!-- (?:table|number):.*?<!-- end -->", r"```.*?```", r"`[^`]*`", r"\]\([^)]*\)", r"\{\{.*?\}\}"):
+        text = re.sub(part, " ", text, flags=re.DOTALL)
+    return " ".join(text.split())
+
+
+def texts():
+    """Yield what a reader may see, with its place: pages, notebooks, cards, sheets, labels, help and variables."""
+    for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]:
+        yield path.name, prose(path.read_text(encoding="utf-8"))
+    for path in sorted(ROOT.glob("docs/notebooks/*.ipynb")):
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        yield path.name, prose("\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown"))
+    for path in sorted(ROOT.glob("scenarios/*.toml")):
+        yield path.name, prose(path.read_text(encoding="utf-8"))
+    for name in scenarios.names():
+        scene = scenarios.load(name)
+        labels = [setting.help for setting in scene.Settings.describe()]
+        for panel in scene.panels(scene.Settings()):
+            labels += [panel.title, *(line.label for line in panel.lines)]
+        yield f"{name}.py", prose("\n".join([scene.__doc__ or "", *labels]))
+    group = get_command(app)
+    for name, command in group.commands.items():
+        helps = [command.help, *(getattr(parameter, "help", "") for parameter in command.params)]
+        yield f"atmosbox {name} --help", prose("\n".join(filter(None, helps)))
+    yield "variables.py", prose("\n".join(each.long_name for each in VARIABLES.values()))
+
+
+def test_no_reader_has_to_guess_what_a_word_means():
+    found = [
+        f'{place}: "{match.group()}", say: {instead}'
+        for place, text in texts()
+        for word, instead in WORDS.items()
+        for match in re.finditer(rf"\b(?:{word})(?!\w)", text, re.IGNORECASE)
+    ]
+    assert found == []

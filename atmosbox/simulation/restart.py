@@ -184,7 +184,7 @@ def check_alike(restart: Restart, prepared: Prepared) -> None:
             said = f" ({before}, now {value})" if isinstance(before, str | int) else ""
             raise FileError(
                 f"{restart.source} cannot go on bit for bit, because the {name}{said} changed since: "
-                f"type atmosbox run --from {restart.source} to begin anew."
+                f"type atmosbox run --from {restart.source} to begin again."
             )
 
 
@@ -210,7 +210,7 @@ def put_back(restart: Restart, recording: Recording) -> float:
     except (RefusedError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise FileError(
             f"The state in {restart.source} is damaged or that of another run ({error}): "
-            "type atmosbox run --from with it to begin anew."
+            "type atmosbox run --from with it to begin again."
         ) from error
 
 

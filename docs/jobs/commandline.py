@@ -1,6 +1,7 @@
 """The commands of the program, their arguments and options, as the program itself declares them."""
 
 import re
+from collections import Counter
 from typing import Any
 
 from jobs.registry import Findings, job, markdown
@@ -12,6 +13,9 @@ SAID = re.compile(r"\s*\[(default: )?([^\]]*)\]$")
 """What stands in brackets behind a help: the default, or that it must be given."""
 
 OPTION = re.compile(r"(?<![\w`-])--[a-z][\w-]*")
+HEAD = ["argument or option", "what it is", "if it is not given"]
+COMMON = 4
+"""An option that says the same in so many commands is explained once."""
 
 
 def commands() -> list[tuple[str, Any, Any]]:
@@ -37,8 +41,8 @@ def examples(command: Any) -> list[str]:
     return [line.strip() for line in (command.epilog or "").splitlines() if line.startswith("  ")]
 
 
-def words(command: Any, context: Any) -> str:
-    """Return the table of what may stand behind a command."""
+def words(command: Any, context: Any) -> list[tuple[str, str, str]]:
+    """Return what may stand behind a command, as rows of a table."""
     rows = []
     for parameter in command.get_params(context):
         typed, text = parameter.get_help_record(context)
@@ -46,20 +50,30 @@ def words(command: Any, context: Any) -> str:
             continue
         said = SAID.search(text)
         default = "–" if said is None else said[2] if said[1] else "must be given"
-        rows.append([f"`{typed.removesuffix(' <str>')}`", shown(SAID.sub("", text)), default])
-    return markdown(["argument or option", "what it is", "if it is not given"], rows)
+        rows.append((f"`{typed.removesuffix(' <str>')}`", shown(SAID.sub("", text)), default))
+    return rows
 
 
 @job("commands", quick=True)
 def reference(found: Findings) -> None:
-    """Make the table of all commands, and the section of each."""
+    """Make the table of all commands, that of the options that many have, and the section of each command."""
     every = commands()
-    rows = [[f"[`atmosbox {name}`](#{name})", told(each)[0]] for name, each, _ in every]
-    found.table(["command", "what it does"], rows, key="list")
+    found.table(
+        ["command", "what it does"],
+        [[f"[`atmosbox {name}`](#{name})", told(each)[0]] for name, each, _ in every],
+        "list",
+    )
+    rows = {name: words(each, context) for name, each, context in every}
+    often = Counter(row for each in rows.values() for row in each)
+    common = [row for row, times in often.items() if times >= COMMON]
+    found.table(HEAD, common, "common")
     parts = []
     for name, each, context in every:
         usage = each.get_usage(context).removeprefix("Usage: ")
+        own = [row for row in rows[name] if row not in common]
+        also = ", ".join(row[0] for row in rows[name] if row in common)
         parts += [f"### {name}", "", "```text", usage, "```", ""]
         parts += [line for paragraph in told(each) for line in (paragraph, "")]
-        parts += [words(each, context), "", "```sh", *examples(each), "```", ""]
+        parts += [markdown(HEAD, own), ""] if own else []
+        parts += [f"Also: {also}.", "", "```sh", *examples(each), "```", ""]
     found.text("\n".join(parts).rstrip(), key="reference")

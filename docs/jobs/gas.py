@@ -1,4 +1,4 @@
-"""The gas in a box without walls: its pressure, how often molecules meet, how fast they are, and who has the energy."""
+"""The gas in a box without walls: its pressure, and how often its molecules collide."""
 
 import math
 
@@ -7,26 +7,20 @@ from jobs.drawing import axes_of, explain, save
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.engine import ParcelSet, Periodic, equal_speeds, maxwell_velocities, random_positions
-from atmosbox.engine.core.measure import temperature
-from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import ParcelSet, Periodic, maxwell_velocities, random_positions
+from atmosbox.scene.statistics import block_average
 
-OPEN = (Periodic(),) * 6
 BLOCKS = 40
 
 
-def cube(n: int, packing: float, seed: int, *, diameter=1.0, mass=1.0, speeds=None, **more) -> ParcelSet:
-    """Return a periodic cube of spheres with Maxwell's velocities at kT = 1, unless others are given."""
+def cube(n: int, packing: float, seed: int) -> ParcelSet:
+    """Return a periodic cube of spheres with Maxwell's velocities at kT = 1."""
     rng = np.random.default_rng(seed)
-    sigma = np.broadcast_to(np.asarray(diameter, float), n)
-    masses = np.broadcast_to(np.asarray(mass, float), n)
-    side = (float(np.sum(math.pi / 6.0 * sigma**3)) / packing) ** (1.0 / 3.0)
+    side = (math.pi / 6.0 * n / packing) ** (1.0 / 3.0)
     length = (side, side, side)
-    position = random_positions(length, sigma, rng, periodic=(True,) * 3)
-    velocity = maxwell_velocities(1.0, masses, rng, exact=True) if speeds is None else equal_speeds(speeds, n, rng)
-    if speeds is not None:
-        velocity -= (masses[:, None] * velocity).sum(axis=0) / masses.sum()
-    return ParcelSet(position, velocity, length=length, walls=OPEN, diameter=sigma, mass=masses, seed=seed, **more)
+    position = random_positions(length, np.ones(n), rng, periodic=(True,) * 3)
+    velocity = maxwell_velocities(1.0, np.ones(n), rng, exact=True)
+    return ParcelSet(position, velocity, length=length, walls=(Periodic(),) * 6, seed=seed)
 
 
 def contacts_pass(parcel: ParcelSet, number: float) -> None:
@@ -139,102 +133,3 @@ def draw_equation_of_state(found: Findings, points: np.ndarray) -> None:
         right.legend(loc="upper left")
         explain(drawing)
         save(found, drawing, "equation-of-state")
-
-
-@job("maxwell")
-def maxwell(found: Findings) -> None:
-    """Start two thousand molecules at one speed: a few collisions later their speeds are Maxwell's."""
-    n, snapshots = 2000, 100
-    gas = cube(n, 0.05, 3, speeds=math.sqrt(3.0))
-    contacts_pass(gas, 20.0 * n)
-    speeds = []
-    for _ in range(snapshots):
-        contacts_pass(gas, 2.5 * n)
-        speeds.append(np.sqrt(np.sum(gas.snapshot().velocity ** 2, axis=1)))
-    kT = temperature(gas, gas.snapshot()) * n / (n - 1)
-    speed = np.sort(np.concatenate(speeds))
-    share = theory.maxwell_speed_cumulative(speed, kT, 1.0)
-    steps = np.arange(speed.size + 1) / speed.size
-    distance = float(max(np.max(steps[1:] - share), np.max(share - steps[:-1])))
-    limit = float(kolmogorov_smirnov_critical(speed.size, 0.001))
-    found.bound(f"greatest distance of the cumulative distributions, {speed.size:,} speeds", distance, limit)
-    found.number("speeds", f"{speed.size:,}")
-
-
-@job("equipartition")
-def equipartition(found: Findings) -> None:
-    """Start five hundred molecules of mass 1 and as many of mass 100 at one speed."""
-    n = 1000
-    mass = np.where(np.arange(n) < n // 2, 1.0, 100.0)
-    gas = cube(n, 0.05, 5, mass=mass, speeds=1.0)
-    contacts_pass(gas, 150.0 * n)
-    values = []
-    for _ in range(400):
-        contacts_pass(gas, 2.0 * n)
-        energy = 0.5 * mass * np.sum(gas.snapshot().velocity ** 2, axis=1)
-        values.append([energy[: n // 2].mean(), energy[n // 2 :].mean()])
-    share = np.array(values)
-    share /= share.mean(axis=1)[:, None]
-    mean, error = block_average(share)
-    found.agree("energy of a molecule of mass 1 over the mean", float(mean[0]), float(error[0]), 1.0)
-    found.agree("energy of a molecule of mass 100 over the mean", float(mean[1]), float(error[1]), 1.0)
-
-
-@job("larsen-borgnakke")
-def larsen_borgnakke(found: Findings) -> None:
-    """Start molecules of air without rotation: in the end it has two fifths of the energy."""
-    n = 2000
-    gas = cube(n, 0.02, 7, rotation=2.0)
-    contacts_pass(gas, 20.0 * n)
-    ratio, spins = [], []
-    for _ in range(200):
-        contacts_pass(gas, 2.0 * n)
-        kinetic, rotational, _ = gas.energy()
-        ratio.append(kinetic / rotational)
-        spins.append(gas.snapshot().rotational_energy)
-    mean, error = block_average(ratio)
-    found.agree("energy of translation over that of rotation", float(mean), float(error), 1.5, tolerance=2.0 / n)
-    spin = np.sort(np.concatenate(spins))
-    share = -np.expm1(-spin / spin.mean())
-    distance = float(np.max(np.abs(share - (np.arange(spin.size) + 0.5) / spin.size)))
-    limit = float(kolmogorov_smirnov_critical(spin.size, 0.001))
-    found.bound(f"greatest distance from an exponential distribution, {spin.size:,} rotations", distance, limit)
-
-
-def counted_and_expected(gas: ParcelSet, members: list[np.ndarray], contacts: float) -> list[float]:
-    """Return contacts counted over contacts expected of a mixture of two, in 20 blocks.
-
-    Molecules of mass 1 and 10^6 hardly exchange energy, so that each kind keeps the temperature of its start; the
-    lighter kind's sets the pace.
-    """
-    light = gas.mass == gas.mass.min()
-    number = np.array([each.sum() for each in members])
-    density = number / gas.volume
-    sizes, masses = ([float(values[each][0]) for each in members] for values in (gas.diameter, gas.mass))
-    # a molecule does not meet itself: among its like it has one partner less
-    rate = theory.collision_rate_between(density, sizes, masses, 1.0) * (1.0 - np.diag(1.0 / number))
-    per_time = float(0.5 * np.sum(density[:, None] * rate)) * gas.volume
-    shares = []
-    for _ in range(20):
-        before, looks, weights = gas.contacts, 5, []
-        for _ in range(looks):
-            gas.advance(gas.time + contacts / (20 * looks) / per_time)
-            speed = gas.snapshot().velocity[light]
-            weights.append(math.sqrt(float(gas.mass[light][0] * np.mean(np.sum(speed**2, axis=1))) / 3.0))
-        shares.append((gas.contacts - before) * 20 / contacts / float(np.mean(weights)))
-    return shares
-
-
-@job("unlike-molecules")
-def unlike_molecules(found: Findings) -> None:
-    """Count how often molecules meet whose masses differ by a million, or whose sizes differ by a hundred."""
-    half, few = np.arange(1000) < 500, np.arange(4010) < 10
-    cases = {
-        "masses 1 : 10⁶": (half, np.ones(1000), np.where(half, 1.0, 1e6), 0.05),
-        "sizes 1 : 100": (few, np.where(few, 100.0, 1.0), np.ones(4010), 0.10),
-    }
-    for what, (first, sigma, mass, packing) in cases.items():
-        gas = cube(sigma.size, packing, 9, diameter=sigma, mass=mass)
-        contacts_pass(gas, 1e5)
-        mean, error = block_average(counted_and_expected(gas, [first, ~first], 1e6))
-        found.agree(f"contacts over those expected, {what}", float(mean), float(error), 1.0, limit=0.01)

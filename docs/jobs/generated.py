@@ -50,9 +50,9 @@ def variables(found: Findings) -> None:
     rows = []
     for name, each in diagnostics.VARIABLES.items():
         dims = ", ".join(each.dims)
-        standard = f"`{each.standard_name}`" if each.standard_name else "–"
-        rows.append([f"`{name}`", dims, f"`{each.units}`" if each.units else "–", each.long_name, standard])
-    found.table(["variable", "dimensions", "unit", "what it is", "CF standard name"], rows)
+        standard = f"; CF: `{each.standard_name}`" if each.standard_name else ""
+        rows.append([f"`{name}`", dims, f"`{each.units}`" if each.units else "–", each.long_name + standard])
+    found.table(["variable", "dimensions", "unit", "what it is; CF standard name, if there is one"], rows)
 
 
 ATTRIBUTES = {
@@ -122,20 +122,6 @@ def refusal(found: Findings) -> None:
     found.text(console("run lifting-dry --set temperature=25m", status=2))
 
 
-@job("tour")
-def tour(found: Findings) -> None:
-    """Type the commands of the minute's tour of the README."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for key, words in {
-            "list": "list",
-            "run": "run lifting-dry --set molecules=2000 --seed 7 --out lift.nc",
-            "plot": "plot lift.nc --format pdf",
-            "check": "check lift.nc",
-        }.items():
-            found.text(console(words, folder), key=key)
-
-
 def lines_of_code(source: str) -> int:
     """Return how many lines of a module are neither empty nor part of an import or a docstring."""
     tree = ast.parse(source)
@@ -167,3 +153,10 @@ def own_scene(found: Findings) -> None:
             if not check.passed:
                 found.failures.append(f"my_scene.py: {check.sentence}")
         found.figure(figure(dataset, "slides"), "own-scene", 100)
+
+
+@job("sheet-words", quick=True)
+def sheet_words(found: Findings) -> None:
+    """Show the words of the worksheet for the same scene."""
+    text = (DOCS / "examples" / "my_scene.sheet.toml").read_text(encoding="utf-8").rstrip()
+    found.text(f"```toml\n{text}\n```")

@@ -1,4 +1,4 @@
-"""How fast the engine is, as the benchmarks have measured it."""
+"""How fast the engines are, as the benchmarks have measured it."""
 
 import datetime
 import json
@@ -12,60 +12,45 @@ CASES = {"periodic": "periodic box", "gravity": "gravity between heat baths"}
 
 def results(name: str) -> Any:
     """Return what a benchmark has written."""
-    return told(name)["results"]
-
-
-def told(name: str) -> Any:
-    """Return what a benchmark has written, with the machine that it ran on."""
-    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
-
-
-def machine(name: str) -> str:
-    """Return when and on what a benchmark ran."""
-    on = told(name)["measured_on"]
-    date = datetime.date.fromisoformat(on["date"])
-    return f"{date.day} {date:%B %Y}, {on['processor']}, Python {on['python']}, numba {on['numba']}"
+    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))["results"]
 
 
 @job("speed", quick=True)
 def speed(found: Findings) -> None:
     """Make the tables of what the benchmarks have measured."""
-    rows = [
-        [CASES[r["case"]], f"{r['packing_fraction']:g}", f"{r['molecules']:,}",
-         f"{r['collisions_per_second'] / 1e3:.0f}", f"{r['ratio']:.2f}", f"{r['bytes_per_molecule']:.0f}"]
-        for r in results("engine")
-    ]  # fmt: skip
-    head = ["gas", "packing fraction", "molecules", "thousand collisions per CPU second", "over the pace without rows"]
-    found.table([*head, "bytes per molecule"], rows)
-    found.number("machine", machine("engine"))
+    measured = results("engine")
+    pace: dict[str, list[str]] = {}
+    for r in measured:
+        gas = f"{CASES[r['case']]}, φ = {r['packing_fraction']:g}"
+        pace.setdefault(gas, []).append(f"{r['collisions_per_second'] / 1e3:.0f}")
+    numbers = sorted({r["molecules"] for r in measured})
+    found.table(["gas", *(f"{n:,} molecules" for n in numbers)], [[gas, *cells] for gas, cells in pace.items()])
+    held = [r["bytes_per_molecule"] for r in measured]
+    found.number("bytes", f"{min(held):.0f} to {max(held):.0f}")
+    on = json.loads((FOLDER / "engine.json").read_text(encoding="utf-8"))["measured_on"]
+    date = datetime.date.fromisoformat(on["date"])
+    found.number("machine", f"{date.day} {date:%B %Y}, {on['processor']}, Python {on['python']}, numba {on['numba']}")
 
 
 @job("waiting", quick=True)
 def waiting(found: Findings) -> None:
     """Make the table of what a class waits for."""
     rows = [
-        [f"[{each['scene']}](scenes/{each['scene']}.md)",
-         *(f"{each[part]:.1f}" for part in ("cpu", "wall", "start", "kernel")),
-         f"{each['compile'] + each['build'] + each['files']:.1f}"]
+        [f"[{each['scene']}](scenes/{each['scene']}.md)", *(f"{each[part]:.1f}" for part in ("cpu", "kernel"))]
         for each in results("scenes")
-    ]  # fmt: skip
-    head = ["scene", "processor time [s]", "wall time [s]", "start-up", "engine", "measuring and files"]
-    found.table(head, rows)
-    found.number("machine", machine("scenes"))
+    ]
+    found.table(["scene", "processor time [s]", "of it the engine [s]"], rows)
 
 
 @job("pace-in-steps", quick=True)
 def pace_in_steps(found: Findings) -> None:
     """Make the table of how fast the engines that go in steps are."""
-    rows = [
-        ["`stepped`", f"φ = {r['packing_fraction']:g}, δ = {r['delta']:g}", f"{r['molecules']:,}", r["threads"],
-         f"{r['molecule_steps_per_second'] / 1e6:.0f}", f"{r['bytes_per_molecule']:.0f}"]
-        for r in results("stepped")
-    ] + [
-        ["`dsmc`", "10 in a cell, 0.09 collisions a step", f"{r['molecules']:,}", r["threads"],
-         f"{r['moves_per_second'] / 1e6:.0f}", f"{r['bytes_per_molecule']:.0f}"]
-        for r in results("dsmc")
-    ]  # fmt: skip
-    head = ["engine", "gas in gravity between heat baths", "molecules", "threads", "million molecules moved per second"]
-    found.table([*head, "bytes per molecule"], rows)
-    found.number("machine", machine("stepped"))
+    pace: dict[str, list[str]] = {}
+    for r in results("stepped"):
+        gas = f"`stepped`, φ = {r['packing_fraction']:g}, δ = {r['delta']:g}"
+        pace.setdefault(gas, []).append(f"{r['molecule_steps_per_second'] / 1e6:.0f}")
+    for r in results("dsmc"):
+        gas = f"`dsmc`, threads: {r['threads']}"
+        pace.setdefault(gas, []).append(f"{r['moves_per_second'] / 1e6:.0f}")
+    numbers = sorted({r["molecules"] for r in results("dsmc")})
+    found.table(["engine", *(f"{n:,} molecules" for n in numbers)], [[gas, *cells] for gas, cells in pace.items()])

@@ -20,6 +20,6 @@ def saturation(found: Findings) -> None:
     for kelvin, mean, error, theory in zip(data.temperature.values, *columns, strict=True):
         celsius = f"{np.round(kelvin - 273.15):.0f}".replace("-", "−")
         found.agree(f"vapour pressure at {celsius} °C", mean, error, theory, unit="hPa")
-    found.bound("largest residual of the energy ledger", swept.ledger, 1e-10)
+    found.bound("largest residual of the energy budget", swept.ledger, 1e-10)
     found.close()
     found.figure(figure(data), "sweep-condensation", 115)
