@@ -4,7 +4,7 @@ import datetime
 import json
 from typing import Any
 
-from jobs.registry import ROOT, Findings, job
+from jobs.registry import ROOT, SCENES, Findings, job
 
 FOLDER = ROOT / "benchmarks"
 CASES = {"periodic": "periodic box", "gravity": "gravity between heat baths"}
@@ -48,6 +48,7 @@ def waiting(found: Findings) -> None:
          *(f"{each[part]:.1f}" for part in ("cpu", "wall", "start", "kernel")),
          f"{each['compile'] + each['build'] + each['files']:.1f}"]
         for each in results("scenes")
+        if each["scene"] in SCENES
     ]  # fmt: skip
     head = ["scene", "processor time [s]", "wall time [s]", "start-up", "engine", "measuring and files"]
     found.table(head, rows)
