@@ -52,13 +52,16 @@ def test_every_relative_link_of_a_page_leads_somewhere():
                 assert anchor in map(heading_anchor, headings), (page, link)
 
 
-def test_every_scene_has_a_page_that_the_index_names():
-    assert {page.stem for page in DOCS.glob("scenes/*.md")} == set(scenarios.names())
+def test_every_scene_has_a_page_that_the_index_names_and_a_variant_that_of_its_base():
     index = (DOCS / "index.md").read_text(encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    for name in scenarios.names():
-        assert f"(scenes/{name}.md)" in index
-        assert f"(docs/scenes/{name}.md)" in readme
+    pages = {path.stem: path.read_text(encoding="utf-8") for path in DOCS.glob("scenes/*.md")}
+    bases = {name: getattr(scenarios.load(name), "variant_of", name) for name in scenarios.names()}
+    assert set(bases.values()) == set(pages)
+    for name, base in bases.items():
+        assert f"(scenes/{base}.md)" in index
+        assert f"(docs/scenes/{base}.md)" in readme
+        assert f"atmosbox run {name}" in pages[base]
 
 
 def test_every_page_is_reached_from_the_index():
@@ -108,7 +111,6 @@ def test_a_disagreement_or_a_stale_page_ends_the_script_with_status_1(tmp_path):
 def test_every_run_that_a_page_suggests_is_understood():
     for scene, *words in itertools.chain.from_iterable(map(commands, PAGES)):
         if scene in scenarios.names():
-            given = [word for option, word in itertools.pairwise(words) if option == "--set"]
-            settings = dict(word.split("=", 1) for word in given)
+            settings = dict(word.split("=", 1) for word in words if re.fullmatch(r"[\w-]+=.+", word))
             changed = runner.prepare(scene, settings).settings.changed().keys()
             assert changed <= settings.keys(), words

@@ -30,7 +30,6 @@ LABS = SCENES | {
 
 FEW = {
     "temperature": {"molecules": 100, "duration": "4 ns"},
-    "temperature-large": {"molecules": 400, "duration": "4 ns"},
     "atmosphere": {"molecules": 400, "duration": 60},
     "lifting-dry": {"molecules": 400},
     "condensation": {"molecules": 500},
@@ -59,7 +58,7 @@ def make(folder: Path, seconds: float, chosen: list[str]) -> None:
     from atmosbox.simulation.preparation import prepare
 
     for name in chosen:
-        run = ab.run(name, save_molecules=True, **FEW.get(name, {}))
+        run = ab.run(name, save_molecules=True, **FEW[name])
         save([run], folder / f"{name}.html", force=True)
         film.save(run, folder / f"{name}.mp4", force=True, seconds=seconds, fps=PICTURES)
         sheet.save(sheet.worksheet(name, {}), folder / f"{name}-sheet.pdf", force=True)
@@ -69,10 +68,8 @@ def make(folder: Path, seconds: float, chosen: list[str]) -> None:
 
 def scenes(app: Sphinx) -> list[str]:
     """Return the scenes of which the gallery has more than a picture."""
-    from atmosbox import scenarios
-
     wanted = app.config.gallery_scenes
-    return scenarios.names() if wanted == "all" else wanted.split(",")
+    return list(FEW) if wanted == "all" else wanted.split(",")
 
 
 def add_links(app: Sphinx, docname: str, source: list[str]) -> None:

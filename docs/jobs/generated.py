@@ -8,7 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from jobs.registry import DOCS, ROOT, Findings, job
+from jobs.registry import DOCS, ROOT, SCENES, Findings, job
 
 from atmosbox import scenarios
 from atmosbox.file import dataset as diagnostics
@@ -18,29 +18,31 @@ from atmosbox.simulation import runner
 
 @job("scenes", quick=True)
 def scenes(found: Findings) -> None:
-    """Make the table of the scenes, each with its first line."""
-    rows = [
-        [f"[{name}](scenes/{name}.md)", level, str(minutes), sentence]
-        for name, (sentence, level, minutes) in scenarios.summaries().items()
-    ]
+    """Make the table of the scenes, each with its first line, and tell each page its level and minutes."""
+    rows = []
+    for name in SCENES:
+        sentence, level, minutes = scenarios.summaries()[name]
+        rows.append([f"[{name}](scenes/{name}.md)", level, str(minutes), sentence])
+        found.number(name, f"{level}, {minutes} minutes")
     found.table(["scene", "level", "minutes", "what it shows"], rows)
 
 
 @job("parameters", quick=True)
 def parameters(found: Findings) -> None:
-    """Make a table of the settings of each scene."""
-    for name in scenarios.names():
+    """Make a table of the settings of each scene but the seed, which all have; `atmosbox info` knows their limits."""
+    for name in SCENES:
         rows = [
-            [f"`{p.name}`", f"`{p.typed()}`", f"`{p.unit}`" if p.unit not in ("", "1") else "–", p.allowed, p.help]
+            [f"`{p.name}`", f"`{p.typed()}`", f"{p.help} ({p.allowed})" if p.choices else p.help]
             for p in scenarios.load(name).Settings.describe()
+            if p.name != "seed"
         ]
-        found.table(["setting", "default", "unit", "allowed", "what it is"], rows, key=name)
+        found.table(["setting", "default", "what it is"], rows, key=name)
 
 
 @job("facts", quick=True)
 def facts(found: Findings) -> None:
     """Make a table of what is exaggerated in each scene, and by how much."""
-    for name in scenarios.names():
+    for name in SCENES:
         found.table(["", ""], [[what, text] for what, text in runner.card(runner.prepare(name, {})).facts], key=name)
 
 

@@ -1,4 +1,4 @@
-"""Pictures beside the figures of the scenes: a parcel of air in its box, and the cells of the engine."""
+"""The cells of the engine, drawn."""
 
 import itertools
 
@@ -7,23 +7,7 @@ from jobs.drawing import BLUE, VERMILLION, axes_of, save
 from jobs.registry import Findings, job
 from matplotlib.patches import Circle, Rectangle
 
-from atmosbox.plot import figure_with_box
 from atmosbox.plot.theme import DARK, FAINT
-from atmosbox.simulation import runner
-
-
-@job("lifting-picture")
-def lifting_picture(found: Findings) -> None:
-    """Draw what `atmosbox plot lifting-dry.nc --with-box` draws."""
-    outcome = runner.execute(runner.prepare("lifting-dry", {}, save_molecules=True))
-    save(found, figure_with_box(outcome.dataset), "lifting-dry", 160)
-
-
-@job("attraction-picture")
-def attraction_picture(found: Findings) -> None:
-    """Draw what `atmosbox plot attraction.nc --with-box` draws."""
-    outcome = runner.execute(runner.prepare("attraction", {}, save_molecules=True))
-    save(found, figure_with_box(outcome.dataset), "attraction-box", 130)
 
 
 @job("cells", quick=True)

@@ -11,11 +11,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from atmosbox import scenarios
 from atmosbox.text.table import measurement
 
 DOCS = Path(__file__).resolve().parents[1]
 ROOT = DOCS.parent
 FIGURES = DOCS / "figures"
+SCENES = tuple(name for name in scenarios.names() if (DOCS / "scenes" / f"{name}.md").is_file())
+"""The scenes that have a page; a variant is told on the page of the scene that it varies."""
 LARGEST_FIGURE = 300_000
 """Bytes that a figure may have."""
 

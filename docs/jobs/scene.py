@@ -2,20 +2,22 @@
 
 from functools import partial
 
-from jobs.registry import Findings, job
+from jobs.registry import SCENES, Findings, job
 
-from atmosbox import scenarios
-from atmosbox.plot import figure
+from atmosbox.plot import figure, figure_with_box
 from atmosbox.simulation import runner
 from atmosbox.text.report import headline_lines
 
 WIDTH = 100
 DOTS_PER_INCH = 100
+WITH_BOX = {"lifting-dry": 160, "attraction": 130}
+"""Scenes whose figure shows the molecules, as `atmosbox plot --with-box` draws it, with its dots per inch."""
 
 
 def scene(name: str, found: Findings) -> None:
     """Run a scene with its defaults; draw it and keep what it measured."""
-    outcome = runner.execute(runner.prepare(name, {}), command=f"atmosbox run {name}")
+    prepared = runner.prepare(name, {}, save_molecules=name in WITH_BOX)
+    outcome = runner.execute(prepared, command=f"atmosbox run {name}")
     if not outcome.ledger <= runner.LEDGER_LIMIT:
         found.failures.append(f"the ledger of {name} is off by {outcome.ledger:.1e}")
     for headline in outcome.headlines:
@@ -25,9 +27,9 @@ def scene(name: str, found: Findings) -> None:
             )
     lines = headline_lines(outcome.headlines, WIDTH)
     found.text("\n".join(["```text", *lines, "```"]))
-    shown = f"{name}-plot" if name == "lifting-dry" else name
-    found.figure(figure(outcome.dataset, "slides"), shown, DOTS_PER_INCH)
+    drawing = figure_with_box(outcome.dataset) if name in WITH_BOX else figure(outcome.dataset, "slides")
+    found.figure(drawing, name, WITH_BOX.get(name, DOTS_PER_INCH))
 
 
-for _name in scenarios.names():
+for _name in SCENES:
     job(f"scene-{_name}")(partial(scene, _name))

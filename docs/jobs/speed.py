@@ -4,7 +4,7 @@ import datetime
 import json
 from typing import Any
 
-from jobs.registry import ROOT, Findings, job
+from jobs.registry import ROOT, SCENES, Findings, job
 
 FOLDER = ROOT / "benchmarks"
 CASES = {"periodic": "periodic box", "gravity": "gravity between heat baths"}
@@ -38,6 +38,7 @@ def waiting(found: Findings) -> None:
     rows = [
         [f"[{each['scene']}](scenes/{each['scene']}.md)", *(f"{each[part]:.1f}" for part in ("cpu", "kernel"))]
         for each in results("scenes")
+        if each["scene"] in SCENES
     ]
     found.table(["scene", "processor time [s]", "of it the engine [s]"], rows)
 

@@ -95,7 +95,6 @@ def exact_beside(found: Findings) -> None:
         if not (pairs and any(way.engine == "dsmc" and way.cost == 1.0 for way in table.ways)):  # the default costs 1
             continue
         exact, other = max(pairs, key=lambda pair: pair[1].cost)
-        found.number(scene, rounded(exact.cost / other.cost))
         apart = {
             name: (one.bias - other.errors[name].bias, math.hypot(one.bias_se, other.errors[name].bias_se))
             for name, one in exact.errors.items()

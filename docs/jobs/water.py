@@ -59,12 +59,8 @@ def saturation(found: Findings) -> None:
         if stated.standard_error > FINE:
             found.failures.append(f"{where} is known to {100.0 * stated.standard_error:.2f} % only")
     t, e, error, share, share_error = np.array(rows).T
-    worst = int(np.argmax(share_error))
-    found.number("error", f"{100.0 * share_error.min():.1f} to {100.0 * share_error.max():.1f} %")
-    found.number("worst", f"{t[worst]:g} °C".replace("-", "−"))
     mean = float(np.average(share, weights=share_error**-2))
     found.number("mean", f"{100.0 * mean:.1f} ± {100.0 * np.sum(share_error**-2) ** -0.5:.1f} %")
-    found.number("chi-squared", f"{np.sum(((share - 1.0) / share_error) ** 2):.1f} for {len(t)} degrees of freedom")
     iapws(found)
     draw_saturation(found, t, e, error, share, share_error)
 
