@@ -34,7 +34,7 @@ from atmosbox.simulation.accuracy import said  # noqa: E402
 from atmosbox.simulation.preparation import usual_engine  # noqa: E402
 from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.trade import tradeoff  # noqa: E402
-from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
+from atmosbox.trade.timed_run import PROFILES  # noqa: E402
 
 TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
 CURVES = set(PROFILES) - {"parcel_temperature"}

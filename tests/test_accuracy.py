@@ -31,7 +31,7 @@ from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
 from atmosbox.text.report import headline_lines
-from atmosbox.trade.tradeoff import Rung, timed_run
+from atmosbox.trade import timed_run
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -433,15 +433,15 @@ def hold(scene, held, members):
     distribution (Welch) and the noise by Fisher's, both at the odds of four standard errors: a table that is right
     is called wrong with a probability of 6e-5 for each bias and each noise.
     """
-    rung = Rung(held.engine, held.settings, 0, 0.0)
+    way = timed_run.Way(held.engine, held.settings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
-        runs = [timed_run.run(scene, rung, 100_000 + seed, lambda share, word: None) for seed in range(members)]
+        runs = [timed_run.run(scene, way, 100_000 + seed) for seed in range(members)]
     tail = stats.norm.sf(4.0)
     for name, known in held.errors.items():
         if name in timed_run.PROFILES:  # its bias is a root mean square along the curve, and its scatter is not normal
             continue
-        errors = np.array([float(run.error[name][0]) for run in runs])
+        errors = np.array([run.quantities[name].error[0] for run in runs])
         bias, noise = errors.mean(), errors.std(ddof=1)
         parts = np.array([known.bias_se**2, noise**2 / members])
         freedom = parts.sum() ** 2 / (parts**2 / np.array([held.members - 1, members - 1])).sum()

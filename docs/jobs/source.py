@@ -25,7 +25,6 @@ MET_BY: dict[str, tuple[str, ...]] = {
     "scene/knob.py": ("live",),
     "scene/sounding": ("lifting-sounding",),
     "simulation/accuracy": ("trade",),
-    "simulation/continuation.py": (),
     "simulation/restart.py": (),
 }
 """Of which scenarios or rooms a job must name or import one, so that a part of the physics changes its numbers: knobs
