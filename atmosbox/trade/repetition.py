@@ -103,6 +103,10 @@ def repeat(
         attempt(k, left() if seconds[k] else min(FIRST_SHARE * budget, left()))
     for k, done in enumerate(results):
         if not done and not failed[k]:
-            long = f"one run takes about {max(seconds[k], 1.0):.0f} s" if seconds[k] else "the budget was spent before"
+            long = (
+                f"one run takes about {max(seconds[k], 1.0):.0f} s"
+                if seconds[k]
+                else "the budget was spent before it began"
+            )
             failed[k] = f"left out: {long}"
     return failed

@@ -167,6 +167,8 @@ def digest(name: str, file: Path, root: Path = ROOT) -> str:
         members |= statements(source, name)
         found = _imports(source)
         waiting += [module.split(".")[1] for module in found if module.startswith("jobs.")]
+        tables = [root / f"{module.replace('.', '/')}.py" for module in found if module.startswith("tests.")]
+        members |= {each for table in tables if table.is_file() for each in statements(table.read_text("utf-8"))}
         imported |= {module for module in found if module.startswith("atmosbox.")}
     standing = {path.stem for path in package.iterdir() if path.is_dir() or path.suffix == ".py"}
     rooms = {name, *(module.split(".")[1] for module in imported)} & standing - {"scenarios", "__init__"}
