@@ -13,6 +13,7 @@ from atmosbox.errors import SettingError
 from atmosbox.scene import engines
 from atmosbox.scene.setup import Series
 from atmosbox.simulation import runner
+from atmosbox.simulation.compilation import compile_kernels
 
 if TYPE_CHECKING:
     from atmosbox.simulation.runner import Outcome
@@ -142,7 +143,7 @@ class Trial(NamedTuple):
 
 def compile_way(scene: str, way: Way) -> None:
     """Compile what a way of running needs, so that compilation does not count in the time of a run."""
-    runner.build(runner.prepare(scene, way.settings, engine=way.engine)).parcel.advance(0.0)
+    compile_kernels(runner.prepare(scene, way.settings, engine=way.engine))
 
 
 def run(scene: str, way: Way, seed: int, progress: Callable[[float, str], None] | None = None) -> Trial:

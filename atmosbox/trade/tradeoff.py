@@ -9,6 +9,7 @@ import os
 import platform
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -107,28 +108,22 @@ def measure(
     tell = progress or (lambda share, word: None)
     words = command or f"atmosbox tradeoff {scene}"
     title = f"Speed against accuracy: {getattr(module, 'title', scene)}"
+    request = {
+        # costs that were measured on another computer or with other sources of the engine cannot be compared
+        **{"version": __version__, "--seed": seed, "sources": source_digest(), "computer": platform.node()},
+        **{f"--set {name}": str(value) for name, value in (settings or {}).items()},
+        "ways": [way.label for way in ways],
+    }
     about = {
         "scene": scene,
+        "request": request,
         "series": [
             {"engine": s.engine, "vary": s.vary, "order": dict(s.order), "settings": dict(s.settings)} for s in series
         ],
-        # costs that were measured on another computer or with other sources of the engine cannot be compared
-        "request": {
-            **{"version": __version__, "--seed": seed, "sources": source_digest(), "computer": platform.node()},
-            **{f"--set {name}": str(value) for name, value in (settings or {}).items()},
-            "ways": [way.label for way in ways],
-        },
     }
     results: list[list[Trial]] = [[] for _ in own]
     earlier = ""
-    checkpoint = None if out is None else Checkpoint(out, force=force).begin()
-    if checkpoint is not None and checkpoint.stale and not force:
-        saved = _saved(checkpoint, about["request"])
-        results = [_trials(saved.runs.values[k]) for k in own]
-        earlier = f"{saved.attrs['history']}\n"
-    spent = sum(trial.wall_seconds for done in results for trial in done)
-    if spent and note is not None:
-        note(f"{sum(map(len, results))} runs are saved, which took {spent:.0f} s: going on with the rest")
+    checkpoint = None if out is None else Checkpoint(out, force=force)
 
     def dataset(status: str, left_out: Sequence[str] = ()) -> xr.Dataset:
         trials = [results[own.index(k)] for k in first]
@@ -148,6 +143,13 @@ def measure(
 
     status = "complete"
     try:
+        if checkpoint is not None and checkpoint.begin().stale and not force:
+            saved = _saved(checkpoint.part, request)
+            results = [_trials(saved.runs.values[k]) for k in own]
+            earlier = f"{saved.attrs['history']}\n"
+        spent = sum(trial.wall_seconds for done in results for trial in done)
+        if spent and note is not None:
+            note(f"{sum(map(len, results))} runs are saved, which took {spent:.0f} s: going on with the rest")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # coarse steps are what is measured here
             for way in {way.kernels: way for way in ways}.values():
@@ -176,15 +178,14 @@ def measure(
     return found
 
 
-def _saved(checkpoint: Checkpoint, asked: Mapping[str, Any]) -> xr.Dataset:
+def _saved(part: Path, asked: Mapping[str, Any]) -> xr.Dataset:
     """Return what a killed call has saved; refuse the runs of another request."""
-    saved = read(checkpoint.part)
+    saved = read(part)
     before = parameters(saved).get("request", {})
     different = [name for name in {**asked, **before} if asked.get(name) != before.get(name)]
     if different:
-        checkpoint.release()
         raise FileError(
-            f"{checkpoint.part} has the runs of another tradeoff ({', '.join(different)}): name another file with "
+            f"{part} has the runs of another tradeoff ({', '.join(different)}): name another file with "
             "--out, or add --force to replace them."
         )
     return saved

@@ -320,8 +320,10 @@ ORDERS = [list(order) for order in itertools.permutations(range(3))]
 STACK = [[5.0, 5.0, z] for z in (0.5, 1.5, 2.5)]
 MANY = sites((12, 12, 12), np.ones(256))
 SIGNS = np.where(np.arange(256)[:, None] % 2 == 0, 1.0, -1.0) * np.ones((256, 3))
-ALIKE, TOO_LONG, FROZEN, AT_REST = "are all alike", "would cross the box", "too cold: warm it", "come to rest"
-CRUSHED = {"exact": "would crush", "stepped": "would crush", "dsmc": "leaves no box", "later": "exact stepped"}
+ALIKE, TOO_LONG = "molecules of dsmc are all alike", "would cross the box"
+FROZEN, AT_REST = "is too cold: warm it", "molecules come to rest"
+CRUSHED = dict.fromkeys(("exact", "stepped"), "would crush the molecules")
+CRUSHED |= {"dsmc": "leaves no box", "later": "exact stepped"}
 
 FAMILIES = {
     "steps": (
@@ -372,7 +374,7 @@ FAMILIES = {
         Case("10³ bounces", energy(at([[5, 5, 4.5]], length=(10, 10, 100), gravity=1.0), 1000.0 * math.sqrt(32.0),
              events=10, within=1e-10), later="exact stepped"),
         Case("10⁷ scale heights", energy(gas(100, 6.0, 6.0, 6e8, top=60.0, gravity=1.0), 100.0),
-             dsmc="molecules to a cell", later="exact stepped"),
+             dsmc="make the cells larger", later="exact stepped"),
         Case("a floor of kT = 10⁻³⁰⁰", energy(gas(50, 10.0, gravity=1.0, walls=(*OPEN[:4], COLD, SMOOTH[5])), 100.0,
              left=0.0), exact=FROZEN, later="stepped dsmc"),
     ),
