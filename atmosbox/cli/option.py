@@ -86,7 +86,7 @@ Accuracy = Annotated[
     str | None,
     typer.Option(
         "--accuracy",
-        metavar="WISH",
+        metavar="TARGET",
         help="Pick engine and settings by their measured errors: sketch, lecture, reference, or the largest error of "
         "a run, such as 0.5K or 2%.",
     ),

@@ -29,7 +29,7 @@ MET_BY: dict[str, tuple[str, ...]] = {
 }
 """Of which scenarios or rooms a job must name or import one, so that a part of the physics changes its numbers: knobs
 are turned by hand, a run that goes on from a saved state ends in the same bits as one that was never stopped, and the
-measured trade chooses only for those who wish for an accuracy."""
+measured trade chooses only for those who ask for an accuracy."""
 LAYOUT = ("registry", "drawing")
 """Files of jobs that only lay out what the others find."""
 
