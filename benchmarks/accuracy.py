@@ -5,9 +5,9 @@
 
 `atmosbox.trade.tradeoff` measures every scene that declares a ladder: each way of running it as often as the budget
 allows, with different seeds. For each headline the table holds the mean difference from theory (bias), its standard
-error, and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of running it holds
-the processor time of the engine as a ratio to that of the scene's default run in the same measurement. It also holds
-the seconds of the default run on the computer of the measurement.
+error, and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of running it
+holds the processor time of the engine as a ratio to that of the scene's default run in the same measurement. It also
+holds the seconds of the default run on the computer of the measurement.
 
 The table leaves out ways that ran less than four times (the scatter of so few seeds says little), ways in which
 molecules left the box, and ways whose energy budget did not close. Entries of scenes that are not named stay as they
