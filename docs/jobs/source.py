@@ -24,7 +24,7 @@ MET_BY: dict[str, tuple[str, ...]] = {
     "scene/ascent": ("lifting-dry", "lifting-moist", "lifting-sounding", "mountains"),
     "scene/knob.py": ("live",),
     "scene/sounding": ("lifting-sounding",),
-    "simulation/accuracy": ("trade",),
+    "simulation/accuracy": (),
     "simulation/restart.py": (),
 }
 """Of which scenarios or rooms a job must name or import one, so that a part of the physics changes its numbers: knobs
