@@ -4,13 +4,13 @@
     python benchmarks/accuracy.py FILE.nc ...                  from measurements of `atmosbox tradeoff`
 
 `atmosbox.trade.tradeoff` measures every scene that declares a ladder: each way of running it as often as the budget
-allows, with different seeds. For each headline the table holds the mean misfit to theory (bias), its standard error,
-and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of running it holds
-the processor time of the engine as a ratio to that of the scene's default run in the same measurement. It also holds
-the seconds of the default run on the computer of the measurement.
+allows, with different seeds. For each headline the table holds the mean difference from theory (bias), its standard
+error, and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of running it
+holds the processor time of the engine as a ratio to that of the scene's default run in the same measurement. It also
+holds the seconds of the default run on the computer of the measurement.
 
 The table leaves out ways that ran less than four times (the scatter of so few seeds says little), ways in which
-molecules left the box, and ways whose energy ledger did not close. Entries of scenes that are not named stay as they
+molecules left the box, and ways whose energy budget did not close. Entries of scenes that are not named stay as they
 are.
 """
 
@@ -34,7 +34,7 @@ from atmosbox.simulation.accuracy import said  # noqa: E402
 from atmosbox.simulation.preparation import usual_engine  # noqa: E402
 from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.trade import tradeoff  # noqa: E402
-from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
+from atmosbox.trade.timed_run import PROFILES  # noqa: E402
 
 TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
 CURVES = set(PROFILES) - {"parcel_temperature"}
@@ -63,7 +63,7 @@ def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
         if one.escaped > 0:
             why = "molecules left the box"
         elif one.ledger > LEDGER_LIMIT:
-            why = "its ledger does not close"
+            why = "its energy budget does not close"
         elif members >= FEWEST and why.startswith("left out"):
             why = ""
         if why or members < FEWEST:

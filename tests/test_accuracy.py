@@ -28,10 +28,10 @@ from atmosbox.file import provenance
 from atmosbox.scene import engines
 from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF, Headline
 from atmosbox.simulation import accuracy, runner
-from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
+from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, expect, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
 from atmosbox.text.report import headline_lines
-from atmosbox.trade.tradeoff import Rung, timed_run
+from atmosbox.trade import timed_run
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -73,23 +73,23 @@ def command(*words):
     return CliRunner().invoke(app, list(words), env={"COLUMNS": None})
 
 
-# What is wished
+# What is asked for
 
 
 def test_a_wish_is_a_target_or_the_largest_error():
     cases = [
         ("sketch", TARGETS["sketch"]),
         (" Lecture ", TARGETS["lecture"]),
-        ("0.5K", Wish("0.5K", kelvin=0.5)),
-        ("0.5 K", Wish("0.5K", kelvin=0.5)),
-        (".5k", Wish(".5K", kelvin=0.5)),
-        ("2e-1K", Wish("2e-1K", kelvin=0.2)),
-        ("2%", Wish("2%", share=0.02, absolute=True)),
-        ("2 %", Wish("2%", share=0.02, absolute=True)),
-        ("100%", Wish("100%", share=1.0, absolute=True)),
+        ("0.5K", Target("0.5K", kelvin=0.5)),
+        ("0.5 K", Target("0.5K", kelvin=0.5)),
+        (".5k", Target(".5K", kelvin=0.5)),
+        ("2e-1K", Target("2e-1K", kelvin=0.2)),
+        ("2%", Target("2%", share=0.02, absolute=True)),
+        ("2 %", Target("2%", share=0.02, absolute=True)),
+        ("100%", Target("100%", share=1.0, absolute=True)),
     ]
-    for text, wish in cases:
-        assert parse(text) == wish
+    for text, target in cases:
+        assert parse(text) == target
 
 
 def test_what_is_no_wish_is_refused_with_what_to_type():
@@ -156,8 +156,8 @@ def test_the_cheapest_way_within_the_wish_is_picked():
         ("lecture", "exact", {"duration": 10.0}),
         ("reference", "exact", {}),
     ]
-    for wish, engine, settings in cases:
-        picked = choose("temperature", wish, tables=TABLES)
+    for target, engine, settings in cases:
+        picked = choose("temperature", target, tables=TABLES)
         assert (picked.way.engine, picked.way.settings, picked.met) == (engine, settings, True)
 
 
@@ -273,20 +273,20 @@ def test_an_accuracy_and_an_earlier_run_exclude_each_other(tmp_path):
     assert "leave one of them out" in result.stderr
 
 
-@pytest.mark.parametrize("wish", ["sketch", "reference"])
-def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_path, hand_made, wish):
+@pytest.mark.parametrize("target", ["sketch", "reference"])
+def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_path, hand_made, target):
     file = tmp_path / "warm.nc"
     fast = ("--set", "molecules=20", "--set", "duration=2ns")
-    words = ("run", "temperature", "--accuracy", wish, *fast, "--out", str(file))
+    words = ("run", "temperature", "--accuracy", target, *fast, "--out", str(file))
     planned = command(*words, "--dry-run")
-    assert f"accuracy {wish} (" in planned.stdout
+    assert f"accuracy {target} (" in planned.stdout
     assert not file.exists()
     result = command(*words, "--json")
     assert result.exit_code == 0, result.output
     made = json.loads(result.stdout)
-    picked = choose("temperature", wish, tables=TABLES)
+    picked = choose("temperature", target, tables=TABLES)
     told = made["accuracy"]
-    assert (told["wish"], told["engine"], made["engine"]) == (wish, picked.way.engine, picked.way.engine)
+    assert (told["wish"], told["engine"], made["engine"]) == (target, picked.way.engine, picked.way.engine)
     assert set(told["differs"]) == {"duration", "molecules"}
     temperature = told["errors"]["mean_temperature"]
     assert temperature["total"] == picked.way.errors["mean_temperature"].total
@@ -297,7 +297,7 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
 
     kept = provenance.parameters(output.read(file))
     assert kept["engine"] == picked.way.engine
-    assert kept["accuracy"]["wish"] == wish
+    assert kept["accuracy"]["wish"] == target
     assert kept["accuracy"]["errors"]["mean_temperature"]["noise"] == temperature["noise"]
 
 
@@ -420,10 +420,10 @@ def test_every_way_of_the_shipped_table_can_be_run_and_every_scene_has_its_defau
 
 
 def test_every_target_has_a_pick_in_every_measured_scene():
-    for scene, wish in itertools.product(accuracy.load(), TARGETS):
-        picked = choose(scene, wish)
+    for scene, target in itertools.product(accuracy.load(), TARGETS):
+        picked = choose(scene, target)
         assert picked.way.errors.keys() == picked.labels.keys()
-        assert picked.met == (wish == "reference" or picked.way.excess(TARGETS[wish]) <= 1.0)
+        assert picked.met == (target == "reference" or picked.way.excess(TARGETS[target]) <= 1.0)
 
 
 def hold(scene, held, members):
@@ -433,15 +433,15 @@ def hold(scene, held, members):
     distribution (Welch) and the noise by Fisher's, both at the odds of four standard errors: a table that is right
     is called wrong with a probability of 6e-5 for each bias and each noise.
     """
-    rung = Rung(held.engine, held.settings, 0, 0.0)
+    way = timed_run.Way(held.engine, held.settings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
-        runs = [timed_run.run(scene, rung, 100_000 + seed, lambda share, word: None) for seed in range(members)]
+        runs = [timed_run.run(scene, way, 100_000 + seed) for seed in range(members)]
     tail = stats.norm.sf(4.0)
     for name, known in held.errors.items():
         if name in timed_run.PROFILES:  # its bias is a root mean square along the curve, and its scatter is not normal
             continue
-        errors = np.array([float(run.error[name][0]) for run in runs])
+        errors = np.array([run.quantities[name].error[0] for run in runs])
         bias, noise = errors.mean(), errors.std(ddof=1)
         parts = np.array([known.bias_se**2, noise**2 / members])
         freedom = parts.sum() ** 2 / (parts**2 / np.array([held.members - 1, members - 1])).sum()
@@ -556,7 +556,7 @@ def test_the_tool_makes_a_table_of_ratios_of_what_can_be_relied_on(tmp_path, mon
     assert table.ways[0].errors["mean_temperature"] == ExpectedError("K", 0.1235, 0.1235, 0.1235, 298.15)
     printed = capsys.readouterr().out
     assert "| exact, duration=2 | 0.25 | 9 |" in printed
-    for reason in ("3 runs, give a longer", "left the box", "ledger does not close", "cannot go on"):
+    for reason in ("3 runs, give a longer", "left the box", "budget does not close", "cannot go on"):
         assert reason in printed
     output.write(dataset, tmp_path / "trade.nc")
     file.unlink()

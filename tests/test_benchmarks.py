@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from atmosbox.engine.core.jit import COMPILED
-
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -41,18 +39,3 @@ def test_whole_runs_are_timed_in_turns_with_another_checkout(tmp_path):
     parts = [result[part] for part in ("start", "compile", "build", "kernel", "files")]
     assert min(parts) >= 0.0
     assert sum(parts) <= result["cpu"]
-
-
-@pytest.mark.validate
-@pytest.mark.skipif(not COMPILED, reason="so many steps take minutes without numba")
-def test_single_precision_is_measured_and_makes_energy_and_loses_gravity(tmp_path):
-    file = tmp_path / "precision.json"
-    run("precision.py", "--n", 2000, "--repeats", 1, "--json", file)
-    found = json.loads(file.read_text())
-    double, single = found["energy"]["error"]
-    assert double < 1e-13 < 1e-10 < single < 1e-4
-    assert found["pace"][0]["bytes_per_molecule"][1] < 0.7 * found["pace"][0]["bytes_per_molecule"][0]
-    errors = {one["gain"]: one["error"] for one in found["fall"]}
-    assert all(abs(each[0]) < 1e-8 for each in errors.values())
-    assert abs(errors[1e-2][1]) < 1e-4
-    assert abs(errors[1e-8][1]) > 0.2

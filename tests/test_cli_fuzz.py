@@ -83,7 +83,7 @@ COMMANDS = {
     name: COMMAND.commands[name].params
     for name in ("list", "info", "plot", "view", "compare", "export", "animate", "check", "sweep")
 }
-SPARED = {"extremes", "version", "help"}
+SPARED = {"version", "help"}
 
 
 @st.composite

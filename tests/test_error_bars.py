@@ -24,7 +24,7 @@ from scipy import stats
 from atmosbox import scenarios
 from atmosbox.simulation import accuracy, runner
 from atmosbox.theory.constants import BOLTZMANN
-from atmosbox.trade.tradeoff.timed_run import PROFILES
+from atmosbox.trade.timed_run import PROFILES
 from tests.few_frames import FRAMES, cut
 
 

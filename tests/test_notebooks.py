@@ -30,7 +30,7 @@ class Small:
 
     @staticmethod
     def smaller(scene, settings):
-        """Return settings of fewer molecules, unless they follow from a wish for accuracy."""
+        """Return settings of fewer molecules, unless they follow from an accuracy that is asked for."""
         if "accuracy" in settings:
             return settings
         of_scene = set(type(prepare(scene, {}).settings).model_fields)

@@ -10,7 +10,7 @@ from atmosbox.text.table import table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline
-    from atmosbox.simulation.accuracy import Expectation, ExpectedError, Wish
+    from atmosbox.simulation.accuracy import Expectation, ExpectedError, Target
 
 
 def expectation_lines(
@@ -34,11 +34,11 @@ def expectation_lines(
             return []
         nothing = f"no error was measured for the engine {engine} at these settings: compare with --engine exact"
         return wrapped(nothing, width)
-    way, wish = expectation.way, expectation.wish
-    asked = "" if wish is None else f"accuracy {wish.text}{_meaning(wish)}: "
+    way, target = expectation.way, expectation.target
+    asked = "" if target is None else f"accuracy {target.text}{_meaning(target)}: "
     lines = wrapped(f"{asked}{way.label}, at {cost(way.cost)}; its errors were measured in {way.members} runs", width)
-    if wish is not None and not expectation.met:
-        lines += wrapped(f"Nothing that was measured is within {wish.limits}: this comes nearest.", width)
+    if target is not None and not expectation.met:
+        lines += wrapped(f"Nothing that was measured is within {target.limits}: this comes nearest.", width)
     found = {headline.name: headline for headline in headlines}
     rows = [
         [
@@ -62,11 +62,11 @@ def expectation_lines(
     return lines
 
 
-def _meaning(wish: Wish) -> str:
+def _meaning(target: Target) -> str:
     """Return the meaning of a named accuracy, in brackets; empty for any other accuracy."""
-    if wish.text not in TARGETS:
+    if target.text not in TARGETS:
         return ""
-    return f" ({'the most accurate that was measured' if wish.best else wish.limits})"
+    return f" ({'the most accurate that was measured' if target.best else target.limits})"
 
 
 def _setting(settings: Mapping[str, Any], name: str) -> str:

@@ -32,7 +32,7 @@ def tradeoff(
     ctx: typer.Context,
     scene: Annotated[str, SceneName],
     values: ValuesOfAll = None,
-    budget: Annotated[str, typer.Option(metavar="TIME", help="For how long to measure.")] = "60s",
+    budget: Annotated[str, typer.Option(metavar="TIME", help="For how long to measure.")] = "40s",
     seed: Annotated[str | None, typer.Option(metavar="N", help="The first seed.  [default: 1]")] = None,
     out: Annotated[
         str | None, out_option("The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]")
@@ -45,19 +45,19 @@ def tradeoff(
 ) -> None:
     """Measure speed against accuracy: a scene through engines and settings, errors beside seconds.
 
-    Every way of running is run again and again, with other seeds, while the budget lasts. Ctrl-C ends it
-    early and keeps what was measured; what was killed goes on where it was when the same is typed again.
+    Every way of running is run again and again, with other seeds, while the budget lasts; the engines are compiled
+    before. Ctrl-C ends it early and keeps what was measured. Type the same again after a kill: it goes on with the
+    runs that are there.
     """
-    from atmosbox.file.netcdf import write
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
     from atmosbox.plot.tradeoff_choice import recommended
     from atmosbox.scene.parameter import Parameter
     from atmosbox.scene.spelling import assignments
-    from atmosbox.trade.tradeoff import KeptRuns, measure
+    from atmosbox.trade.tradeoff import measure
 
     try:
-        seconds = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(budget))
+        seconds = float(Parameter("budget", "s", 40.0, 1.0, 1e6).parse(budget))
         first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int").parse(seed or "1"))
     except SettingError as error:
         error.fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
@@ -81,11 +81,8 @@ def tradeoff(
             force=force,
             note=None if quiet else lambda text: tell(f"note: {text}"),
         )
-    write(found, path, force=force)
     write_whole(files[1], as_csv(found).encode())
     save(found, files[2], force=force, all_panels=all_panels)
-    KeptRuns.remove(path)
-    interrupted = found.attrs["atmosbox_status"] == "interrupted"
     if as_json:
         best = recommended(found)
         way = None if best is None else str(found.rung.values[best[0]])
@@ -94,7 +91,7 @@ def tradeoff(
         say(str(path))
     else:
         say("\n".join([*lines(found, width()), "", *(f"file: {file}" for file in files)]))
-    if interrupted:
+    if found.attrs["atmosbox_status"] == "interrupted":
         tell("stopped: what was measured is kept")
         raise typer.Exit(INTERRUPTED)
 
@@ -139,37 +136,27 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
     chosen = foremost(found)
     header = ["run", "seconds", "cost", "runs"]
     header += [f"{found.label.sel(quantity=name).item()} [{_unit(found, name)}]" for name in chosen]
-    body, notes = [], []
+    body: list[list[str]] = []
+    missing: dict[str, list[str]] = {}
     for k, label in enumerate(found.rung.values):
-        members = int(found.members.values[k])
-        if not members:
-            notes.append(f"{label}: {found.left_out.values[k]}")
+        if why := str(found.left_out.values[k]):
+            missing.setdefault(why, []).append(str(label))
+        if not (members := int(found.members.values[k])):
             continue
         cells = [str(label), number(found.engine_seconds.values[k], 2), number(found.cost.values[k], 3), str(members)]
         for name in chosen:
-            one = found.isel(rung=k).sel(quantity=name)
             scale = 1.0 if _unit(found, name) == "K" else 100.0
-            if math.isfinite(one.bias.item()):
-                shown = measurement(scale * one.bias.item(), scale * one.bias_se.item())
-                cells.append(f"{shown} ({scale * one.noise.item():.2g})")
-            else:
-                cells.append("-")
+            bias, se, noise = (
+                scale * found[part].sel(quantity=name).values[k] for part in ("bias", "bias_se", "noise")
+            )
+            cells.append(f"{measurement(bias, se)} ({noise:.2g})" if math.isfinite(bias) else "-")
         body.append(cells)
-    words = "bias ± its standard error (noise of a single run); cost: 1 is the reference, all of the energy is kept"
-    drift = found.energy_drift.values
-    if (drift[drift == drift] > 1e-12).any():
-        words = "bias ± its standard error (noise of a single run); cost: 1 is the reference"
-    best, advice = recommended(found), ""
-    if best is not None:
+    words = ["bias ± its standard error (noise of a single run); cost: 1 is the reference"]
+    if (best := recommended(found)) is not None:
         head = f"recommended, the cheapest within {WANTED.limits}" if best[1] else "the most accurate"
-        advice = f"{head}: {found.rung.values[best[0]]}, {number(found.engine_seconds.values[best[0]], 2)} s"
-    return [
-        *table(header, body, columns),
-        "",
-        *wrapped(words, columns),
-        *wrapped(advice, columns),
-        *(w for n in notes for w in wrapped(n, columns)),
-    ]
+        words += [f"{head}: {found.rung.values[best[0]]}, {number(found.engine_seconds.values[best[0]], 2)} s"]
+    words += [f"{why}: {'; '.join(labels)}" for why, labels in missing.items()]
+    return [*table(header, body, columns), "", *(line for text in words for line in wrapped(text, columns))]
 
 
 def _unit(found: xr.Dataset, name: str) -> str:

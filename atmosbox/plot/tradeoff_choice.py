@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from atmosbox.scene.wish import TARGETS
+from atmosbox.scene.target import TARGETS
 
 __all__ = [
     "MOST_PANELS",

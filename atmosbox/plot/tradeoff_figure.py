@@ -288,7 +288,7 @@ def _series(dataset: xr.Dataset, row: int, shown: NDArray[np.bool_]) -> tuple[st
     Its own settings are those of all its runs.
     """
     rows = series_of(dataset)
-    values = dataset.value.values[shown][np.argsort(dataset.engine_seconds.values[shown])]
+    values = dataset.value.values[shown]
     vary = rows[row]["vary"] if row < len(rows) else "settings"
     ends = " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1]) if np.isfinite(value)))
     own = rows[row]["settings"] if row < len(rows) else {}

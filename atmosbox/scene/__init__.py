@@ -9,7 +9,7 @@ imported when it is first used.
 `engines`      the engines a scene may use, and their options
 `instruments`  what is measured, one class each
 `statistics`   means with their standard errors
-`wish`         how accurate a run is to be, as a user says it
+`target`       how accurate a run is to be, as a user says it
 `headline`     the main results of a run, compared with theory
 `panels`       the graphs of its figure, declared
 `knob`         what may be changed while the box runs

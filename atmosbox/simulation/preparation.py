@@ -99,7 +99,7 @@ def prepare(
     engine
         The engine with its options, such as ``stepped:delta=0.02``; None for that of the scene, see `usual_engine`.
     accuracy
-        A wish, as `atmosbox.simulation.accuracy.parse` reads it. It chooses the engine and the settings that trade
+        A target, as `atmosbox.simulation.accuracy.parse` reads it. It chooses the engine and the settings that trade
         accuracy for time; values in `settings` are not changed.
     save_molecules
         Whether position and velocity of all molecules are saved in every frame; None if they take less than 10 MB.

@@ -1,5 +1,6 @@
-"""Measured speed against measured accuracy, and the extreme cases in which simulations fail.
+"""Measured speed against measured accuracy: the same scene with several engines and settings, errors and seconds.
 
-`tradeoff`  the same scene with several engines and settings: errors and processor times
-`extremes`  boxes that are difficult to simulate, and the outcome of each on each engine
+`timed_run`   one way of running a scene, and the errors and the cost of one run
+`repetition`  the order of the runs, so that all fit into a budget of time
+`tradeoff`    all ways of running a scene, and the dataset with their errors and costs
 """

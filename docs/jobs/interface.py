@@ -35,12 +35,7 @@ DOORS = {
         "atmosbox.live",
         "atmosbox.sheet",
     ),
-    "trust": (
-        "atmosbox.scene.engines",
-        "atmosbox.simulation.accuracy",
-        "atmosbox.trade.tradeoff",
-        "atmosbox.trade.extremes",
-    ),
+    "trust": ("atmosbox.scene.engines", "atmosbox.simulation.accuracy", "atmosbox.trade.tradeoff"),
 }
 """The modules by the table in which they stand."""
 

@@ -24,13 +24,12 @@ MET_BY: dict[str, tuple[str, ...]] = {
     "scene/ascent": ("lifting-dry", "lifting-moist", "lifting-sounding", "mountains"),
     "scene/knob.py": ("live",),
     "scene/sounding": ("lifting-sounding",),
-    "simulation/accuracy": ("trade",),
-    "simulation/continuation.py": (),
+    "simulation/accuracy": (),
     "simulation/restart.py": (),
 }
 """Of which scenarios or rooms a job must name or import one, so that a part of the physics changes its numbers: knobs
 are turned by hand, a run that goes on from a saved state ends in the same bits as one that was never stopped, and the
-measured trade chooses only for those who wish for an accuracy."""
+measured trade chooses only for those who ask for an accuracy."""
 LAYOUT = ("registry", "drawing")
 """Files of jobs that only lay out what the others find."""
 
@@ -168,6 +167,8 @@ def digest(name: str, file: Path, root: Path = ROOT) -> str:
         members |= statements(source, name)
         found = _imports(source)
         waiting += [module.split(".")[1] for module in found if module.startswith("jobs.")]
+        tables = [root / f"{module.replace('.', '/')}.py" for module in found if module.startswith("tests.")]
+        members |= {each for table in tables if table.is_file() for each in statements(table.read_text("utf-8"))}
         imported |= {module for module in found if module.startswith("atmosbox.")}
     standing = {path.stem for path in package.iterdir() if path.is_dir() or path.suffix == ".py"}
     rooms = {name, *(module.split(".")[1] for module in imported)} & standing - {"scenarios", "__init__"}

@@ -1,16 +1,15 @@
 """Speed against accuracy, as `atmosbox tradeoff` has measured it."""
 
-import json
 import math
 import warnings
 
 import numpy as np
 from jobs.registry import ROOT, Findings, job, rounded
 
-from atmosbox import scenarios, theory
+from atmosbox import theory
 from atmosbox.engine import Periodic, maxwell_velocities, random_positions
 from atmosbox.file.netcdf import read
-from atmosbox.plot import tradeoff_choice, tradeoff_figure
+from atmosbox.plot import tradeoff_figure
 from atmosbox.scene import engines
 from atmosbox.simulation import accuracy
 
@@ -24,61 +23,31 @@ def measured(scene: str):
     return data.isel(rung=[str(each).partition(":")[0] in engines.names() for each in data.engine.values])
 
 
-def percent(one) -> float:
-    """Return by how much an error is multiplied in the unit in which it is shown."""
-    return 1.0 if str(one.unit.values) == "K" else 100.0
-
-
 @job("tradeoff", quick=True)
 def trade(found: Findings) -> None:
-    """Draw the figure and make the table of each scene."""
+    """Draw the figure of each scene."""
     for scene in SCENES:
-        data = measured(scene)
-        found.figure(tradeoff_figure.figure(data), f"tradeoff-{scene}", 130)
-        if scene == SCENES[0]:
-            found.figure(tradeoff_figure.figure(data, all_panels=True), f"tradeoff-{scene}-all", 130)
-        names = tradeoff_choice.foremost(data)
-        units = ["K" if str(data.unit.sel(quantity=name).item()) == "K" else "%" for name in names]
-        head = ["run", "cost", "runs"]
-        head += [f"{data.label.sel(quantity=n).item()} [{u}]" for n, u in zip(names, units, strict=True)]
-        settings = scenarios.load(scene).Settings
-        rows: dict[str, list[object]] = {}
-        for k in np.argsort(np.nan_to_num(data.cost.values, nan=math.inf), kind="stable"):
-            if not int(data.members.values[k]):
-                continue
-            row: list[object] = [rounded(float(data.cost.values[k])), int(data.members.values[k])]
-            for name in names:
-                one = data.isel(rung=k).sel(quantity=name)
-                bias, se, noise = (percent(one) * one[key].item() for key in ("bias", "bias_se", "noise"))
-                row.append(f"{rounded(bias)} ± {rounded(se, 1)} ({rounded(noise, 1)})" if math.isfinite(bias) else "–")
-            # two series may share a way of running: it is named by what differs from the scene
-            changed = settings.from_user(json.loads(str(data.settings.values[k]))).changed()
-            way = ", ".join([str(data.engine.values[k]), *(f"{name}={value}" for name, value in changed.items())])
-            rows.setdefault(way, row)
-        found.table(head, [[f"`{way}`", *row] for way, row in rows.items()], key=scene)
-        found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
+        found.figure(tradeoff_figure.figure(measured(scene)), f"tradeoff-{scene}", 130)
+    found.figure(tradeoff_figure.figure(measured(SCENES[0]), all_panels=True), f"tradeoff-{SCENES[0]}-all", 130)
 
 
 @job("answer", quick=True)
 def answer(found: Findings) -> None:
-    """Make the table of what to type in class, for homework and for a paper."""
+    """Make the table of what runs for each of the three accuracies that have a name."""
     rows = []
     for scene, table in accuracy.load().items():
-        for purpose, target in (("class", "sketch"), ("homework", "lecture"), ("paper", "reference")):
+        for target in accuracy.TARGETS:
             picked = accuracy.choose(scene, target)
-            seconds = picked.way.cost * float(table.how["seconds"])
-            worst = {
-                unit: max((one.total for one in picked.way.errors.values() if one.unit == unit), default=math.nan)
-                for unit in ("K", "1")
-            }
-            error = [f"{rounded(worst['K'])} K"] if worst["K"] > 0.0 else []
-            error += [f"{rounded(100.0 * worst['1'])} %"] if worst["1"] > 0.0 else []
+            error = [
+                f"{rounded(scale * max(of))} {unit}"
+                for kind, unit, scale in (("K", "K", 1.0), ("1", "%", 100.0))
+                if (of := [one.total for one in picked.way.errors.values() if one.unit == kind])
+            ]
             short = "" if picked.met else " (the best there is)"
-            rows.append(
-                [scene if purpose == "class" else "", purpose, f"`atmosbox run {scene} --accuracy {target}`",
-                 f"`{picked.way.label}`", rounded(seconds), ", ".join(error) + short]
-            )  # fmt: skip
-    found.table(["scene", "for", "type", "what runs", "seconds", "error"], rows)
+            seconds = rounded(picked.way.cost * float(table.how["seconds"]))
+            name = scene if target == "sketch" else ""
+            rows.append([name, target, f"`{picked.way.label}`", seconds, ", ".join(error) + short])
+    found.table(["scene", "accuracy", "what runs", "seconds", "error"], rows)
 
 
 @job("exact-beside", quick=True)
@@ -144,19 +113,3 @@ def approaching(found: Findings) -> None:
         ["time [σ/√(kT/m)]", "collisions over theory", "without the test", "change of the energy", "without the test"],
         rows,
     )
-
-
-@job("precision", quick=True)
-def precision(found: Findings) -> None:
-    """Make the tables of what single precision would gain dsmc, and of what it would cost."""
-    data = json.loads((FOLDER / "precision.json").read_text(encoding="utf-8"))
-    rows = [
-        [f"{one['molecules']:,}", *(f"{each / 1e6:.0f}" for each in one["moves_per_cpu_second"]),
-         f"{one['ratio']:.2f}", *(f"{each:.0f}" for each in one["bytes_per_molecule"])] for one in data["pace"]
-    ]  # fmt: skip
-    head = ["molecules", "million moves per second, 64 bits", "32 bits", "times faster"]
-    found.table([*head, "bytes per molecule, 64 bits", "32 bits"], rows, key="pace")
-    rows = [[rounded(one["gain"]), *(f"{rounded(100.0 * each, 1)} %" for each in one["error"])] for one in data["fall"]]
-    found.table(["gain of a step over the thermal speed", "error of the fall, 64 bits", "32 bits"], rows, key="fall")
-    found.number("energy", rounded(data["energy"]["error"][1], 1))
-    found.number("steps", data["energy"]["steps"])

@@ -1,7 +1,4 @@
-"""Refusals of the engines: a number by its name and value, with what to give instead; a contradiction in a sentence.
-
-Test_assessment also gives every engine values that are not numbers.
-"""
+"""Refusals of the engines: a number by its name and value, with what to give instead; a contradiction in a sentence."""
 
 import math
 import re

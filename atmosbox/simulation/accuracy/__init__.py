@@ -5,7 +5,7 @@ The table that comes with atmosbox, ``accuracy.json``, holds for each of these r
 cost, as a ratio to the scene's default run. ``python benchmarks/accuracy.py`` measures it again.
 """
 
-from atmosbox.scene.wish import TARGETS, Wish, parse
+from atmosbox.scene.target import TARGETS, Target, parse
 from atmosbox.simulation.accuracy.cheapest import Expectation, choose, cost, expect
 from atmosbox.simulation.accuracy.measured import ExpectedError, Measured, Table, load, said
 
@@ -15,7 +15,7 @@ __all__ = [
     "ExpectedError",
     "Measured",
     "Table",
-    "Wish",
+    "Target",
     "choose",
     "cost",
     "expect",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from atmosbox.errors import SettingError
-from atmosbox.scene.wish import FIX, TARGETS, Wish, parse
+from atmosbox.scene.target import FIX, TARGETS, Target, parse
 from atmosbox.simulation.accuracy.measured import Measured, Table, load
 
 __all__ = ["Expectation", "choose", "cost", "expect"]
@@ -26,10 +26,10 @@ class Expectation:
         The chosen values of the settings that trade accuracy for time.
     labels
         Labels of the headlines in a table, by name.
-    wish
-        The accuracy that the user wished; None if the engine was given explicitly.
+    target
+        The accuracy that the user asked for; None if the engine was given explicitly.
     met
-        Whether the expected errors are within the wish.
+        Whether the expected errors are within the target.
     differs
         The settings in which this run differs from the one that was measured.
     """
@@ -37,7 +37,7 @@ class Expectation:
     way: Measured
     labels: Mapping[str, str]
     sets: Mapping[str, Any] = field(default_factory=dict)
-    wish: Wish | None = None
+    target: Target | None = None
     met: bool = True
     differs: tuple[str, ...] = ()
 
@@ -54,7 +54,7 @@ class Expectation:
             for name, error in self.way.errors.items()
         }
         return {
-            "wish": None if self.wish is None else self.wish.text,
+            "wish": None if self.target is None else self.target.text,
             "met": self.met,
             "engine": self.way.engine,
             "settings": dict(self.way.settings),
@@ -67,17 +67,17 @@ class Expectation:
 
 def choose(
     scene: str,
-    wish: str | Wish,
+    target: str | Target,
     settings: Mapping[str, Any] | None = None,
     tables: Mapping[str, Table] | None = None,
 ) -> Expectation:
-    """Return the cheapest measured run of a scene whose expected error is within a wish.
+    """Return the cheapest measured run of a scene whose expected error is within a target.
 
     Parameters
     ----------
     scene
         The name of a scene.
-    wish
+    target
         The largest error.
     settings
         The values that the user has set and that differ from the scene's defaults, by name.
@@ -87,49 +87,49 @@ def choose(
     Returns
     -------
     Expectation
-        The chosen run. If no run reaches a wish with a name, it is the most accurate run, and ``met`` is False.
+        The chosen run. If no run reaches a target with a name, it is the most accurate run, and ``met`` is False.
 
     Raises
     ------
     SettingError
-        If the scene was not measured, or no run is within a wish given as a number; the sentence names the best run.
+        If the scene was not measured, or no run is within a target given as a number; the sentence names the best run.
 
     Examples
     --------
     >>> choose("temperature", "reference").met
     True
     """
-    wish = wish if isinstance(wish, Wish) else parse(wish)
+    target = target if isinstance(target, Target) else parse(target)
     tables = load() if tables is None else tables
     if scene not in tables:
         fix = f"leave it out, or take one of {', '.join(tables)}"
-        raise SettingError("accuracy", wish.text, f"is not for {scene}, whose errors were not measured", fix)
+        raise SettingError("accuracy", target.text, f"is not for {scene}, whose errors were not measured", fix)
     table = tables[scene]
-    # a run that ends before it reaches a headline satisfies no wish
+    # a run that ends before it reaches a headline satisfies no target
     ways = tuple(way for way in table.same_experiment(settings or {}) if way.errors.keys() >= table.labels.keys())
     if not ways:
         problem = f"is not for {scene} with these settings, at which nothing was measured"
-        raise SettingError("accuracy", wish.text, problem, "leave it out")
-    worst = {id(way): way.excess(wish) for way in ways}
+        raise SettingError("accuracy", target.text, problem, "leave it out")
+    worst = {id(way): way.excess(target) for way in ways}
     good = [way for way in ways if worst[id(way)] <= 1.0]
 
     def picked(way: Measured, met: bool) -> Expectation:
         sets = {name: value for name, value in way.settings.items() if name in table.varies}
-        return Expectation(way, table.labels, sets, wish, met)
+        return Expectation(way, table.labels, sets, target, met)
 
-    if good and not wish.best:
+    if good and not target.best:
         if not any(worst.values()):
-            raise SettingError("accuracy", wish.text, f"says nothing of {scene}, which has no temperature", FIX)
+            raise SettingError("accuracy", target.text, f"says nothing of {scene}, which has no temperature", FIX)
         return picked(min(good, key=lambda way: way.cost), True)
     best = min(ways, key=lambda way: worst[id(way)])
-    if wish.text in TARGETS:
-        return picked(best, wish.best)
-    reached = worst[id(best)] * (100.0 * wish.share if wish.absolute else wish.kelvin)
+    if target.text in TARGETS:
+        return picked(best, target.best)
+    reached = worst[id(best)] * (100.0 * target.share if target.absolute else target.kelvin)
     digits = 1 - math.floor(math.log10(reached))
     enough = math.ceil(reached * 10.0**digits) / 10.0**digits  # never less than the best run reaches
-    unit = "%" if wish.absolute else "K"
+    unit = "%" if target.absolute else "K"
     raise SettingError(
-        "accuracy", wish.text,
+        "accuracy", target.text,
         f"is more than any measured run of {scene} reaches: the best, {best.label}, comes to "
         f"{reached:.2g} {unit} at {cost(best.cost)}",
         f"give --accuracy {enough:.6g}{unit}, or reference",

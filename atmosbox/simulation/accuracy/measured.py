@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from atmosbox.scene.wish import Wish
+from atmosbox.scene.target import Target
 
 __all__ = ["FILE", "ExpectedError", "Measured", "Table", "load", "said"]
 
@@ -22,8 +22,8 @@ FILE = Path(__file__).with_name("accuracy.json")
 class ExpectedError(NamedTuple):
     """The measured error of a headline: in K if ``unit`` is K, else as a share of the theory.
 
-    ``bias`` is the mean misfit to theory and ``bias_se`` its standard error, ``noise`` the standard deviation of a
-    single run, and ``theory`` the value of the theory [SI].
+    ``bias`` is the mean difference from theory and ``bias_se`` its standard error, ``noise`` the standard deviation of
+    a single run, and ``theory`` the value of the theory [SI].
     """
 
     unit: str
@@ -49,12 +49,12 @@ class ExpectedError(NamedTuple):
         """Return the factor from this error to that of a headline [SI], for the value of the theory in a run."""
         return 1.0 if self.unit == "K" else abs(theory or 0.0)
 
-    def excess(self, wish: Wish) -> float:
-        """Return the error as a multiple of what a wish allows; 0 if the wish sets no limit."""
+    def excess(self, target: Target) -> float:
+        """Return the error as a multiple of what a target allows; 0 if the target sets no limit."""
         if self.unit != "K":
-            return self.total / wish.share
-        relative = self.total / abs(self.theory) / wish.share if wish.absolute else 0.0
-        return max(self.total / wish.kelvin, relative)
+            return self.total / target.share
+        relative = self.total / abs(self.theory) / target.share if target.absolute else 0.0
+        return max(self.total / target.kelvin, relative)
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,9 @@ class Measured:
         """The engine and the settings of this run, in words."""
         return ", ".join([self.engine, *(said(name, value) for name, value in self.settings.items())])
 
-    def excess(self, wish: Wish) -> float:
-        """Return the largest error as a multiple of what a wish allows."""
-        return max((error.excess(wish) for error in self.errors.values()), default=math.inf)
+    def excess(self, target: Target) -> float:
+        """Return the largest error as a multiple of what a target allows."""
+        return max((error.excess(target) for error in self.errors.values()), default=math.inf)
 
 
 @dataclass(frozen=True)

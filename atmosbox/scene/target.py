@@ -11,10 +11,10 @@ from typing import NamedTuple
 from atmosbox.errors import SettingError
 from atmosbox.scene.spelling import nearest, plain
 
-__all__ = ["FIX", "TARGETS", "Wish", "parse"]
+__all__ = ["FIX", "TARGETS", "Target", "parse"]
 
 
-class Wish(NamedTuple):
+class Target(NamedTuple):
     """How large the expected error of a single run may be.
 
     Parameters
@@ -45,29 +45,29 @@ class Wish(NamedTuple):
         return " and ".join([*limits, f"{self.kelvin:g} K"] if math.isfinite(self.kelvin) else limits)
 
 
-TARGETS: Mapping[str, Wish] = MappingProxyType(
+TARGETS: Mapping[str, Target] = MappingProxyType(
     {
-        wish.text: wish
-        for wish in (
-            Wish("sketch", 3.0, 0.05),  # in a figure the result lies near the theory
-            Wish("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
-            Wish("reference", 0.5, 0.01, best=True),  # the best of all measured runs, at any cost
+        target.text: target
+        for target in (
+            Target("sketch", 3.0, 0.05),  # in a figure the result lies near the theory
+            Target("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
+            Target("reference", 0.5, 0.01, best=True),  # the best of all measured runs, at any cost
         )
     }
 )
-"""The wishes that have a name, the same for all scenes."""
+"""The targets that have a name, the same for all scenes."""
 
 _NUMBER = re.compile(r"([0-9]+\.?[0-9]*(?:e[+-]?[0-9]{1,3})?|\.[0-9]+(?:e[+-]?[0-9]{1,3})?)\s*(\S*)", re.IGNORECASE)
 FIX = "give --accuracy lecture, or an error such as 0.5K or 2%"
 
 
-def parse(text: object) -> Wish:
-    """Return the wish that a text stands for.
+def parse(text: object) -> Target:
+    """Return the target that a text stands for.
 
     Parameters
     ----------
     text
-        The name of a wish, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
+        The name of a target, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
 
     Raises
     ------
@@ -104,4 +104,4 @@ def parse(text: object) -> Wish:
     if "," in word:
         raise refusal("is written with a comma", unit)
     name = f"{found[1]}{unit.upper()}"
-    return Wish(name, share=size / 100.0, absolute=True) if unit == "%" else Wish(name, kelvin=size)
+    return Target(name, share=size / 100.0, absolute=True) if unit == "%" else Target(name, kelvin=size)

@@ -1,15 +1,7 @@
-"""Boxes that break simulations, and the properties that only the exact engine promises for them.
+"""Properties in extreme boxes that only the exact engine promises; `cases` has what every engine is tested in."""
 
-The boxes that every engine is tested in are in `atmosbox.trade.extremes`, and are run by test_assessment.py.
-
-Every wait is bounded twice: `within` limits the number of events of a run, and a run that does not return ends
-the whole suite with a traceback.
-"""
-
-import faulthandler
 import itertools
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -28,15 +20,9 @@ from atmosbox.engine import (
     random_positions,
 )
 from atmosbox.engine.core.measure import layer_sample, mean_free_path, temperature
+from tests.extremes.cases import Run
 
-S, P = Specular(), Periodic()
-
-
-@pytest.fixture(autouse=True)
-def nothing_hangs():
-    faulthandler.dump_traceback_later(1800.0, exit=True, file=sys.__stderr__)
-    yield
-    faulthandler.cancel_dump_traceback_later()
+S, P, RUN = Specular(), Periodic(), Run("exact")
 
 
 def within(box, until, events=4_000_000):
@@ -61,21 +47,6 @@ def sphere_box(number, length, *, seed=1, kT=1.0, diameter=1.0, mass=1.0, walls=
     return ParcelSet(x, v, length=length, diameter=diameter, mass=mass, walls=walls, seed=seed, **options)
 
 
-def deepest_overlap(box):
-    """Return by how much the closest pair overlaps, in diameters of the pair."""
-    x, diameter = box.snapshot().position, box.diameter
-    i, j = np.triu_indices(box.number, 1)
-    apart = x[i] - x[j]
-    apart -= np.where(box.periodic, box.length * np.rint(apart / box.length), 0.0)
-    return np.max(1.0 - np.sqrt(np.sum(apart**2, axis=1)) / (0.5 * (diameter[i] + diameter[j])), initial=-np.inf)
-
-
-def outermost(box):
-    """Return how far a molecule reaches through a wall, in box lengths."""
-    x, radius = box.snapshot().position, 0.5 * box.diameter[:, None]
-    return np.max(np.maximum(radius - x, x - (box.length - radius)) / box.length, initial=-np.inf)
-
-
 @pytest.mark.parametrize(("packing", "periodic"), [(0.55, True), (0.5, False)])
 def test_a_dense_box_starts_at_random_without_overlap(packing, periodic):
     number = 500
@@ -84,7 +55,7 @@ def test_a_dense_box_starts_at_random_without_overlap(packing, periodic):
     assert packing_fraction(box.length, box.diameter) == pytest.approx(packing)
     within(box, 2.0)
     assert box.contacts > 5_000
-    assert deepest_overlap(box) <= 1e-9
+    RUN.checked(box)
     assert sum(box.energy()) == pytest.approx(1.5 * number, rel=1e-12)
 
 
@@ -144,9 +115,7 @@ def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(numbe
     box = sphere_box(number, (side, side, 12.0), walls=walls, rotation=rotation, rotational_energy=energy)
     with pytest.raises(StalledError, match=r"the piston has come down to .* where it would crush the molecules"):
         within(box, 6.0, 50_000_000)
-    assert deepest_overlap(box) <= 1e-9
-    assert outermost(box) <= 1e-9
-    assert box.ledger() <= 1e-10
+    RUN.checked(box)
     assert packing_fraction(box.length, box.diameter) <= 0.6 + 1e-9
     assert box.time <= 6.0
     # and it does not go on from there
@@ -180,13 +149,6 @@ def test_a_clock_that_has_run_for_long_has_lost_none_of_its_digits():
     within(box, float(periods), 20_000_000)
     assert box.snapshot().position[0, 0] == pytest.approx(3.0, abs=1e-7)
     assert box.wall_hits[:2].tolist() == [1_000_000, 1_000_000]
-
-
-def test_a_molecule_that_runs_into_an_edge_ten_thousand_times_keeps_its_diagonal():
-    box = within(lone([2, 2, 5], [1.0, 1.0, 0.0]), 90_000.0)
-    assert box.snapshot().position[0] == pytest.approx([2, 2, 5], abs=1e-6)
-    assert box.snapshot().velocity[0] == pytest.approx([1, 1, 0], abs=1e-12)
-    assert box.wall_hits.tolist() == [5000] * 4 + [0, 0]
 
 
 @pytest.mark.parametrize("collision_number", [1.0, math.inf])

@@ -1,0 +1,188 @@
+"""One way of running a scene, and the errors and the cost of one run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.errors import SettingError
+from atmosbox.scene import engines
+from atmosbox.scene.setup import Series
+from atmosbox.simulation import runner
+from atmosbox.simulation.compilation import compile_kernels
+
+if TYPE_CHECKING:
+    from atmosbox.simulation.runner import Outcome
+
+__all__ = ["PROFILES", "Quantity", "Trial", "Way", "compile_way", "run", "ways_of"]
+
+PROFILES = {
+    "number_density": "number_density_theory",
+    "layer_temperature": "layer_temperature_theory",
+    "speed_probability_density": "speed_probability_density_theory",
+    "parcel_temperature": "adiabat_temperature",
+}
+"""Curves with the variable of their theory; the error is the root mean square of the difference along the curve."""
+
+_TEMPERATURES = ("K", "degC")
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way of running a scene: an engine with its options, and settings.
+
+    Parameters
+    ----------
+    engine
+        The engine with its options.
+    settings
+        The settings that differ from the scene's defaults.
+    series
+        Index of its series in the scene.
+    value
+        Its value of the setting or option that varies in the series.
+    """
+
+    engine: str
+    settings: Mapping[str, Any]
+    series: int = 0
+    value: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """The engine and the settings as text, without the scene.
+
+        Examples
+        --------
+        >>> Way("exact", {"ascent": 400}).label
+        'exact, ascent=400'
+        """
+        return ", ".join([self.engine, *(f"{name}={value}" for name, value in self.settings.items())])
+
+    @property
+    def kernels(self) -> str:
+        """Text that tells what is compiled: the engine, and the settings that are not numbers.
+
+        Examples
+        --------
+        >>> Way("stepped:delta=0.1", {"plane": True, "duration": 50.0}).kernels
+        'stepped plane=True'
+        """
+        words = sorted(f"{name}={value}" for name, value in self.settings.items() if isinstance(value, bool | str))
+        return " ".join([self.engine.partition(":")[0], *words])
+
+
+def ways_of(series: Sequence[Series], settings: Mapping[str, Any]) -> tuple[Way, ...]:
+    """Return the ways of running a scene that some series name.
+
+    Parameters
+    ----------
+    series
+        The series.
+    settings
+        The user's settings for all series; a series overrides them by its own settings and its varied setting.
+
+    Raises
+    ------
+    SettingError
+        If there are no series or values, or an engine or one of its options is refused.
+
+    Examples
+    --------
+    >>> [way.label for way in ways_of([Series("exact", "ascent", (100, 200))], {"molecules": 500})]
+    ['exact, molecules=500, ascent=100', 'exact, molecules=500, ascent=200']
+    """
+    found = []
+    for place, row in enumerate(series):
+        options = {parameter.name for parameter in engines.choose(row.engine).engine.parameters}
+        for value in row.values:
+            engine, own = row.engine, {**row.settings}
+            if row.vary in options:
+                engine += f"{',' if ':' in engine else ':'}{row.vary}={value:g}"
+            else:
+                own[row.vary] = value
+            found.append(Way(str(engines.choose(engine)), {**settings, **own}, place, float(value)))
+    if not found:
+        raise SettingError("scene", None, "declares nothing to compare", "give its module a ladder of Series")
+    return tuple(found)
+
+
+class Quantity(NamedTuple):
+    """The errors of one run in a number, or in a curve with one value for each point.
+
+    ``unit`` is K for temperatures; for all other quantities it is 1, because the error is a share of the theory.
+    ``theory`` is its value [SI], for a curve the mean of its absolute value. ``error`` and ``noise`` are the
+    differences from theory and their standard errors.
+    """
+
+    label: str
+    unit: str
+    theory: float
+    error: list[float]
+    noise: list[float]
+
+
+class Trial(NamedTuple):
+    """The errors, by the name of the quantity, and the cost of one run.
+
+    ``made`` is the energy that the scheme made, as a share; ``collisions`` are per molecule and unit of elapsed time.
+    """
+
+    quantities: dict[str, Quantity]
+    wall_seconds: float
+    engine_seconds: float
+    ledger: float
+    made: float
+    escaped: int
+    collisions: float
+
+
+def compile_way(scene: str, way: Way) -> None:
+    """Compile what a way of running needs, so that compilation does not count in the time of a run."""
+    compile_kernels(runner.prepare(scene, way.settings, engine=way.engine))
+
+
+def run(scene: str, way: Way, seed: int, progress: Callable[[float, str], None] | None = None) -> Trial:
+    """Run a scene once in one way with a seed, and return the errors and the cost.
+
+    Raises
+    ------
+    AtmosboxError
+        If the engine refuses the scene, or cannot go on.
+    """
+    prepared = runner.prepare(scene, {**way.settings, "seed": seed}, engine=way.engine)
+    return _trial(runner.execute(prepared, progress=progress), prepared.settings)
+
+
+def _trial(outcome: Outcome, settings: Any) -> Trial:
+    quantities: dict[str, Quantity] = {}
+    for headline in outcome.headlines:
+        # a headline without a statistical error does not depend on the run: for instance theory against a library
+        if headline.theory is None or headline.misfit is None or headline.standard_error == 0.0:
+            continue
+        absolute = headline.unit in _TEMPERATURES
+        if size := 1.0 if absolute else abs(headline.theory):
+            errors = [float(headline.misfit / size)], [float(headline.standard_error / size)]
+            unit = "K" if absolute else "1"
+            quantities[headline.name] = Quantity(headline.label, unit, float(headline.theory), *errors)
+    dataset = outcome.dataset
+    for name, beside in PROFILES.items():
+        if name not in dataset or beside not in dataset or f"{name}_se" not in dataset:
+            continue
+        theory = dataset[beside].values
+        absolute = dataset[name].attrs.get("units") in _TEMPERATURES
+        # the difference is divided by the mean of the curve, because a curve may fall to zero
+        mean = float(np.mean(np.abs(theory)))
+        size = 1.0 if absolute else mean
+        errors = ((dataset[name].values - theory) / size).tolist(), (dataset[f"{name}_se"].values / size).tolist()
+        quantities[name] = Quantity(f"profile of {name.replace('_', ' ')}", "K" if absolute else "1", mean, *errors)
+    lasted = float(dataset.elapsed_time_bnds.values[-1, 1] - dataset.elapsed_time_bnds.values[0, 0])
+    per_molecule = outcome.collisions / max(getattr(settings, "molecules", 1), 1)
+    return Trial(
+        quantities, float(outcome.seconds), float(outcome.engine_seconds), float(outcome.ledger), float(outcome.made),
+        int(outcome.escaped), per_molecule / lasted if lasted > 0.0 else math.nan,
+    )  # fmt: skip
