@@ -668,7 +668,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headlines=("liquid_density", "vapor_density") if settings.start == "slab" else (),
         )
         pressure = over_time(
-            "Its vapour pressure, which is not prescribed",
+            "Its vapour pressure, which was not prescribed",
             {"normal_pressure": "across the surface"},
             "pressure",
             "bar",
