@@ -85,7 +85,7 @@ def heating(found: Findings) -> None:
         axes.set_xlabel("heat supplied (zJ)")
         axes.set_ylabel("temperature (K)")
         axes.legend()
-        axes.set_title("Heat first warms the drop, then evaporates it, then warms the vapour")
+        axes.set_title("Heat warms the drop, evaporates it, warms the vapour")
         explain(drawing, f"means of {DROPS} drops of 400 molecules for each pace")
         save(found, drawing, "heating")
     (slow, slow_se), (fast, fast_se) = latent.values()
