@@ -180,4 +180,5 @@ def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
 def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
     """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
     missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
+    missing |= {"roll_speed_theory"} - {str(name) for name in dataset.variables}  # known for an ideal gas alone
     return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))

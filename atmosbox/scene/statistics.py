@@ -203,6 +203,33 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     return BlockAverage(quick.mean, error)
 
 
+def growth_per_step(values: ArrayLike) -> BlockAverage:
+    r"""Return the factor by which an unstable fluctuation grows from value to value, as a logarithm, and its error.
+
+    Noise drives the fluctuation at all times: :math:`a_{k+1} = e^s a_k + r_k`. The factor is that of the least squares,
+    :math:`\sum a_k a_{k+1} / \sum a_k^2`, in which large values count most, and its error follows from the scatter of
+    the :math:`r_k`.
+
+    Parameters
+    ----------
+    values : (time,)
+        At least four values at equal intervals, of a single mode with its sign.
+
+    Examples
+    --------
+    >>> found = growth_per_step(1.1 ** np.arange(20.0))
+    >>> bool(abs(found.mean - np.log(1.1)) < 1e-12)
+    True
+    """
+    series = np.asarray(values, np.float64)
+    before, after = series[:-1], series[1:]
+    size = float(before @ before)
+    factor = float(before @ after) / size
+    scatter = float(np.sum((after - factor * before) ** 2)) / (len(before) - 1)
+    error = np.sqrt(scatter / size) / abs(factor)
+    return BlockAverage(np.log(np.maximum(factor, 1e-300)), error)
+
+
 def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
     r"""Return the largest distance between a measured distribution and the true one that is likely by chance.
 

@@ -21,6 +21,7 @@ wall_law            the energy of molecules that leave a wall; the heat between 
 barometric          how the density of a gas decreases with height
 column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
+convection          air between a warm floor and a cold ceiling: at rest, the adiabat, the onset of motion
 stirred_column      how the temperature of a stirred column falls with height
 lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
@@ -60,6 +61,7 @@ from atmosbox.theory.collision import (
     mean_free_time,
 )
 from atmosbox.theory.column_temperature import column_temperature
+from atmosbox.theory.convection import Gas, RestState, adiabatic_lapse_rate, growth_rates, rayleigh_number, rest_state
 from atmosbox.theory.diffusion import (
     diffusivity_error,
     mixed_share,
@@ -197,12 +199,15 @@ __all__ = [
     "CriticalPoint",
     "EvaporationEquilibrium",
     "FreeMolecularSlab",
+    "Gas",
     "IsobaricWater",
     "ParcelPath",
+    "RestState",
     "SimpleFluid",
     "StirredColumn",
     "VaporNumber",
     "adiabatic_index",
+    "adiabatic_lapse_rate",
     "barometric_density",
     "barometric_pressure",
     "cape_cin",
@@ -240,6 +245,7 @@ __all__ = [
     "free_molecular_slab",
     "gas_pressure",
     "gas_pressure_discs",
+    "growth_rates",
     "hard_sphere_isentrope",
     "height_of_pressure",
     "hertz_knudsen_flux",
@@ -276,6 +282,8 @@ __all__ = [
     "parcel_buoyancy",
     "parcel_path",
     "raining_path",
+    "rayleigh_number",
+    "rest_state",
     "saturation_mixing_ratio",
     "saturation_vapor_pressure",
     "saturation_vapor_pressure_iapws",
