@@ -21,6 +21,7 @@ hundred molecules high is so viscous that air under a real lapse rate would stay
 
 import functools
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -61,6 +62,10 @@ SETTLE = 80
 """Number of frames left out of the means: until the air turns over steadily."""
 LEAST = 40
 """Least number of frames for a headline."""
+HEIGHTS = 6.0
+"""Greatest height of the box, in scale heights half-way between the temperatures of floor and ceiling."""
+LOWEST = 4.0, 1.5
+"""Least height of the box, in diameters of discs and in mean free paths of spheres."""
 CROWD = 14.0
 """Mean number of discs in a cell of the fields; there are at most 16 rows of cells."""
 IN_CELL = 8.0
@@ -77,7 +82,7 @@ CASES: dict[str, dict[str, Any]] = {
         "sides": "warm-and-cold",
         "molecules": 3300,
     },
-    "stable": {"gravity": 33.0, "molecules": 60_000},
+    "stable": {"gravity": 33.0, "molecules": 30_000},
 }
 """The cases by name, with the settings that have other defaults there."""
 
@@ -92,9 +97,7 @@ ladder = (
 class Settings(SceneSettings):
     """What a user may set."""
 
-    case: str = setting(
-        "rolls", "", "which box: its other settings have their defaults from it", choices=tuple(CASES)
-    )
+    case: str = setting("rolls", "", "which box: its other settings have their defaults from it", choices=tuple(CASES))
     molecules: int = setting(7300, "1", "number of molecules", low=50, high=1_000_000)
     floor_temperature: float = setting(
         270.0, "degC", "temperature of the floor, or of the warm side", low=-270.0, high=2000.0
@@ -132,6 +135,19 @@ class Settings(SceneSettings):
         declared = {parameter.name: parameter for parameter in self.describe()}["case"]
         super().__init__(**(CASES[str(declared.parse(values.get("case", declared.default)))] | values))
 
+    def check(self) -> None:
+        """Refuse a weight that would leave hardly any air below the ceiling."""
+        si = self.si
+        light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
+        most = math.floor(100.0 * HEIGHTS * light) / 100.0
+        if self.gravity > most:
+            raise SettingError(
+                "gravity",
+                f"{self.gravity:g} m/s2",
+                f"is so large that the box is more than {HEIGHTS:g} scale heights high",
+                f"give --set gravity={most:g} or less, or a lower height",
+            )
+
 
 class Box:
     """The box in reduced units: mass in masses of a molecule, energy in kT half-way between floor and ceiling.
@@ -144,15 +160,19 @@ class Box:
         si = settings.si
         self.thin = engine.name == "dsmc"
         n, aspect = settings.molecules, settings.width
-        if settings.rotation and not self.thin:
-            raise SettingError("rotation", True, "is not for the discs of a plane", "give --engine dsmc")
         density = IN_CELL if self.thin else 4.0 / math.pi * settings.packing
         self.height = rounded(math.sqrt(n / (density * aspect)))
+        least = LOWEST[self.thin]
+        if self.height < least:
+            raise SettingError(
+                "molecules",
+                n,
+                f"are too few for a box {aspect:g} times as wide as high",
+                f"give --set molecules={math.ceil(least**2 * density * aspect)} or more",
+            )
         self.width = rounded(self.height * aspect)
         self.density = n / (self.height * self.width)
         across = rounded((math.sqrt(2.0) * math.pi * self.density) ** -0.5) if self.thin else 1.0
-        # the cells of dsmc are as wide as a mean free path, unless the user wants others
-        self.cell = {"cell": 1.0} if self.thin and not {"cell", "occupancy"} & set(engine.options) else {}
         self.gas = law.Gas((5 if settings.rotation else 3) if self.thin else 2, across, 1.0 if self.thin else 0.0)
         energy = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature)
         scale = Scale(si.height / self.height, DRY_AIR.molecule_mass, energy)
@@ -249,12 +269,16 @@ def _start(box: Box, settings: Settings, engine: EngineChoice, rng: RandomNumber
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the box at its start."""
     box = Box(settings, engine)
+    if settings.rotation and not box.thin:
+        raise SettingError("rotation", True, "is not for the discs of a plane", "give --engine dsmc")
     n, scale = settings.molecules, box.scale
     rng = RandomNumbers(settings.seed)
     position, kT = _start(box, settings, engine, rng)
     planar = not box.thin
     velocity = maxwell_velocities(kT, np.ones(n), rng, planar=planar, exact=True)
-    more: dict[str, Any] = dict(box.cell)
+    more: dict[str, Any] = {}
+    if box.thin and not {"cell", "occupancy"} & set(engine.options):  # unless the user wants others
+        engine = replace(engine, options={**engine.options, "cell": 1.0})
     if settings.rotation:
         more |= {"rotation": 2.0, "rotational_energy": rotational_energies(kT, np.full(n, 2.0), rng)}
     warm, cold = HeatBath(box.floor), HeatBath(box.ceiling)
@@ -363,7 +387,9 @@ def _linear(dataset: "xr.Dataset", settings: Settings) -> tuple[int, int] | None
     if settings.start != "at-rest" or settings.sides == "warm-and-cold" or not reached.any():
         return None
     last = int(np.argmax(reached))
-    noise = float(np.median(dataset.roll_amplitude_se.values)) * math.sqrt(dataset.sizes["mode"])
+    # each mode of thermal motion has the variance kT / mN
+    energy = BOLTZMANN * float(np.mean(dataset.air_temperature.values))
+    noise = math.sqrt(dataset.sizes["mode"] * energy / (DRY_AIR.molecule_mass * settings.molecules))
     grew = last >= 6 and np.nanmax(speed) > 6.0 * noise
     return (0, last) if grew else None
 
@@ -390,9 +416,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     square = np.sign(late.wind_speed.values) * late.wind_speed.values**2
     wind = overlapping_average(square)
     if still:
-        found.append(
-            Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2")
-        )
+        found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
     elif float(wind.mean) > 0.0:
         speed = math.sqrt(float(wind.mean))
         error = 0.5 * float(wind.standard_error) / speed
@@ -415,21 +439,18 @@ def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[-late.sizes["elapsed_time"], -1], [0, 1]])[0])
     pull = box.now(dataset)[1]
     per_area = box.density * box.height
-    inner = 1.0 if box.thin else (box.width - (0.0 if bool(np.isnan(force[0, 0])) else 1.0)) / box.width
+    inner = 1.0 - (0.0 if bool(np.isnan(force[0, 0])) else box.gas.diameter) / box.width
     # the momentum at either end of the time is a matter of chance, with the variance N m kT
     warm = float(np.mean(late.air_temperature.values)) / box.scale.temperature
     chance = math.sqrt(2.0 * per_area * warm / box.width) / (lasted / box.scale.time)
-    weight = overlapping_average(force[:, 4] - force[:, 5])
-    error = max(chance * box.scale.pressure, float(weight.standard_error) if pull == 0.0 else 0.0)
+    weight = float(np.mean(force[:, 4] - force[:, 5]))
     return Headline(
-        "weight_of_the_air", float(weight.mean), error, pull * per_area / inner * box.scale.pressure,
+        "weight_of_the_air", weight, chance * box.scale.pressure, pull * per_area / inner * box.scale.pressure,
         0.0, CHANCE_ALONE, "Pa", "hPa", "pressure on the floor minus that on the ceiling",
     )  # fmt: skip
 
 
-def _core(
-    late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *, still: bool
-) -> tuple[Headline, Headline]:
+def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *, still: bool) -> tuple[Headline, ...]:
     """Return the lapse rate of the core and the Nusselt number; theory is that of air at rest, if it stays at rest."""
     rest, beside = box.rest(kT, pull), box.rest(kT, pull, cells=True)
     rows = (np.arange(box.rows) + 0.5) / box.rows
@@ -446,15 +467,16 @@ def _core(
         "mean_core_lapse_rate", "lapse rate of the core", lapse, told, "K m-1", "K/km",
         tolerance=abs(slope(beside) - slope(rest)) if still else 0.0, reason=reason if still else CHANCE_ALONE,
     )  # fmt: skip
+    if not rest.heat:
+        return (first,)
     heat = np.diff(late.heat_from_wall.values, axis=0) / np.diff(late.elapsed_time.values)[:, None]
-    area = box.width * (1.0 if box.thin else (box.width - 1.0) / box.width)
-    unit = rest.heat * area * box.scale.total_energy / box.scale.time
-    passed = overlapping_average(0.5 * (heat[:, 4] - heat[:, 5]) / unit, min(20, len(heat) // 2)) if unit else lapse
+    unit = rest.heat * box.width * box.scale.total_energy / box.scale.time
+    passed = overlapping_average(0.5 * (heat[:, 4] - heat[:, 5]) / unit, min(20, len(heat) // 2))
     second = Headline.of_mean(
         "nusselt_number", "heat, over that conducted at rest (Nusselt number)", passed, 1.0 if still else None, "1",
         tolerance=abs(beside.heat / rest.heat - 1.0) if still else 0.0, reason=reason if still else CHANCE_ALONE,
     )  # fmt: skip
-    return (first, second) if unit else (first, first)
+    return first, second
 
 
 def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
@@ -474,16 +496,12 @@ def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     )  # fmt: skip
 
 
-def _grown(
-    dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, first: int, last: int
-) -> Headline:
+def _grown(dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, first: int, last: int) -> Headline:
     """Return the growth rate of the strongest roll while it is weak, beside that of linear theory."""
     strongest = int(np.argmax(np.abs(dataset.roll_amplitude.values[last])))
     step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
     found = growth_per_step(dataset.roll_amplitude.values[first : last + 1, strongest])
-    rate, slowed = (
-        float(box.growth(kT, pull, cells=cells)[strongest]) / box.scale.time for cells in (False, True)
-    )
+    rate, slowed = (float(box.growth(kT, pull, cells=cells)[strongest]) / box.scale.time for cells in (False, True))
     return Headline(
         "growth_rate", float(found.mean) / step, float(found.standard_error) / step, rate,
         abs(rate - slowed) + LINEAR**2 * abs(rate), "cells as wide as a mean free path make dsmc viscous", "s-1", "s-1",

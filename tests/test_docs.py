@@ -111,5 +111,5 @@ def test_every_run_that_a_page_suggests_is_understood():
             given = [word for option, word in itertools.pairwise(words) if option == "--set"]
             settings = dict(word.split("=", 1) for word in given)
             changed = runner.prepare(scene, settings).settings.changed().keys()
-            # stirring changes other settings too
-            assert changed <= settings.keys() or "stirring" in settings, words
+            # stirring and a case change other settings too
+            assert changed <= settings.keys() or {"stirring", "case"} & settings.keys(), words

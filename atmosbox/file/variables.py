@@ -236,7 +236,7 @@ VARIABLES: dict[str, Variable] = {
         ("roll_speed", "m s-1", "root mean square of the amplitudes of all rolls less their noise; negative likewise"),
         cell_methods=_MEAN,
     ),
-    **_declared(_TIME, ("core_lapse_rate", "K m-1", "lapse rate in the middle third of the height",
+    **_declared(_TIME, ("core_lapse_rate", "K m-1", "lapse rate between three and seven tenths of the height",
                         "air_temperature_lapse_rate"), cell_methods=_MEAN, difference=True),
     **_declared((*_TIME, "mode"), ("roll_amplitude", "m s-1", "amplitude of the upward wind of rolls"),
                 cell_methods=_MEAN),

@@ -34,6 +34,7 @@ FRAMES = {
     "atmosphere": (60, 12),
     "attraction": (60, 12),
     "condensation": (60, 12),
+    "convection": (60, 20),
     "diffusion": (30, None),
     "elastic-collisions": (60, 12),
     "evaporation": (80, None),

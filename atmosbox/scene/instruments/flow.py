@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.scene.instruments.instrument import Readings
-from atmosbox.scene.statistics import block_average
+from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
 __all__ = ["CORE", "LOW", "MODES", "Flow"]
 
 Array = NDArray[np.float64]
 
-CORE = (0.35, 0.65)
+CORE = (0.299, 0.701)
 """Between which shares of the height the lapse rate of the core is measured."""
 LOW = 0.1
 """Share of the height within which molecules are released at the floor, and of the width above a chimney."""
@@ -43,13 +43,11 @@ class Flow:
     **Wind less noise.** Of n molecules in a cell with momentum :math:`\mathbf P`, the mean of
     :math:`(P^2 - \sum_i p_i^2) / n (n - 1)` is the square of the wind without the part of each molecule alone, which is
     noise. So is :math:`a^2 - (2/N)^2 \sum_i w_i^2 s_i^2` for the mode :math:`a = (2/N) \sum_i w_i s_i`,
-    :math:`s = \sin(\pi z / L) \cos(\pi n x / L_x)` in the middle of the molecule's cell; between periodic sides n counts
-    half waves too, and only even numbers fit, of any phase.
+    :math:`s = \sin(\pi z / L) \cos(\pi n x / L_x)` in the middle of the molecule's cell; between periodic sides n
+    counts half waves too, and only even numbers fit, of any phase.
 
-    **Errors of a field.** At one moment the velocities of n molecules give a wind with the variance :math:`kT / mn`, a
-    temperature with :math:`2 T^2 / f n`, a number with :math:`n / X`, where X is the stiffness of the gas. The variance
-    of a mean over the samples of a frame is that less the variance of the samples within the frame; this share is the
-    mean of all cells.
+    **Error of a field.** How much the frames that have settled scatter about their mean, cell by cell; earlier frames
+    are given the same error.
     """
 
     def __init__(self, rows: int, columns: int, release: int, *, chimney: bool = False) -> None:
@@ -57,16 +55,13 @@ class Flow:
         self._release = release
         self._chimney = chimney
         self._tagged = np.zeros(0, np.bool_)
-        self._sum = np.zeros((8, rows * columns))
+        self._sum = np.zeros((5, rows * columns))
         self._wind = 0.0
         self._mode = np.zeros((2, MODES))
-        self._noise = np.zeros(MODES)
         self._looks = 0
         self._fields: list[Array] = []
-        self._errors: list[Array] = []
         self._rows: list[dict[str, Any]] = []
         self._sides = np.ones(3)
-        self._mass = 1.0
         self._turn = False
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
@@ -86,11 +81,10 @@ class Flow:
         drift = (along**2 + up**2) / held
         freedom = np.maximum((2.0 if parcel.planar else 3.0) * number - 2.0, 0.0)
         energy = 0.5 * mass * (twice - drift)
-        square = np.divide(energy**2, freedom, out=np.zeros(cells), where=freedom > 0.0)
-        self._sum += number, along, up, energy, freedom, number**2, drift, square
+        self._sum += number, along, up, energy, freedom
         pairs = number > 1.0
         self._wind += float(np.sum((along**2 + up**2 - flat)[pairs] / (number[pairs] - 1.0))) / len(u)
-        self._sides, self._mass, self._turn = np.array(length, np.float64), mass, bool(parcel.periodic[0])
+        self._sides, self._turn = np.array(length, np.float64), bool(parcel.periodic[0])
         height, across = (np.arange(rows) + 0.5) / rows, (np.arange(columns) + 0.5) / columns
         high = np.sin(math.pi * height)
         wave = self._waves()[:, None] * (math.pi * across)
@@ -101,7 +95,6 @@ class Flow:
         )
         amplitude = np.array([phase @ part for phase in phases])
         self._mode += amplitude[0], np.sum(amplitude**2, axis=0) - sum(phase**2 @ alone for phase in phases)
-        self._noise += phases[0] ** 2 @ alone
         self._looks += 1
 
     def _waves(self) -> Array:
@@ -111,42 +104,16 @@ class Flow:
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the fields of a frame, and tag the molecules near the floor when it is time."""
         looks = max(self._looks, 1)
-        number, along, up, energy, freedom, squares, drift, square = self._sum
+        number, along, up, energy, freedom = self._sum
         rows, columns = self._shape
-        mass, planar = self._mass, parcel.planar
-        volume = parcel.volume / (rows * columns)
         with np.errstate(invalid="ignore", divide="ignore"):
-            density = number / looks / volume
-            u, w = along / number, up / number
+            density = number / looks / (parcel.volume / (rows * columns))
             kT = np.where(freedom > 0.0, 2.0 * energy / freedom, np.nan)
-            diameter = float(parcel.diameter[0]) if planar else 0.0
-            stiff = factor = np.ones_like(density)
-            if planar:
-                packing = np.minimum(law.packing_fraction_discs(density, diameter), 0.9)
-                stiff, factor = law.inverse_compressibility_discs(packing), law.compressibility_factor_discs(packing)
-            each = np.maximum(number / looks, 1e-9)
-            free = np.maximum(freedom / looks, 1e-9)
-            known = np.isfinite(kT)
-            apart = mass * (drift - (along**2 + up**2) / np.maximum(number, 1.0))
-            windy = _left(np.sum(apart[known]), 2.0 * np.sum(kT[known]), looks)
-            warmer = 4.0 * square - 4.0 * energy**2 / np.maximum(freedom, 1e-9)
-            warm = _left(np.sum((warmer / (2.0 * kT**2))[known]), float(known.sum()), looks)
-            crowd = _left(np.sum((squares / looks - each**2) * looks), np.sum(each / stiff), looks)
-            error_wind = np.sqrt(kT / (mass * each) * windy)
-            error_warm = np.sqrt(2.0 / free * warm)
-            error_crowd = np.sqrt(crowd / (stiff * each))
-        self._fields.append(np.stack([kT, density, density * kT * factor, u, w]))
-        self._errors.append(
-            np.stack(
-                [
-                    kT * error_warm,
-                    density * error_crowd,
-                    density * kT * factor * np.hypot(error_warm, stiff / factor * error_crowd),
-                    error_wind,
-                    error_wind,
-                ]
-            )
-        )
+            factor = np.ones_like(density)
+            if parcel.planar:
+                packing = law.packing_fraction_discs(density, float(parcel.diameter[0]))
+                factor = law.compressibility_factor_discs(np.minimum(packing, 0.9))
+            self._fields.append(np.stack([kT, density, density * kT * factor, along / number, up / number]))
         height = (np.arange(rows) + 0.5) / rows
         inside = (height > CORE[0]) & (height < CORE[1])
         warmth, free_rows = (row.reshape(rows, columns).sum(axis=1) for row in (energy, freedom))
@@ -164,7 +131,6 @@ class Flow:
             {
                 "wind_speed": _root(self._wind / looks),
                 "roll_amplitude": self._mode[0] / looks,
-                "roll_amplitude_se": np.sqrt(self._noise / looks),
                 "roll_speed": _root(float(np.sum(self._mode[1])) / looks),
                 "core_lapse_rate": lapse,
                 "tracer_share_aloft": share,
@@ -173,7 +139,7 @@ class Flow:
         )
         self._sum = np.zeros_like(self._sum)
         self._wind, self._looks = 0.0, 0
-        self._mode, self._noise = np.zeros((2, MODES)), np.zeros(MODES)
+        self._mode = np.zeros((2, MODES))
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return fields and series of all frames; see `Instrument`."""
@@ -185,7 +151,6 @@ class Flow:
         units = {
             "wind_speed": speed,
             "roll_amplitude": speed,
-            "roll_amplitude_se": speed,
             "roll_speed": speed,
             "core_lapse_rate": scale.temperature / scale.length,
         }
@@ -202,22 +167,18 @@ class Flow:
             "horizontal_wind": speed,
             "upward_wind": speed,
         }
-        for values, suffix in ((self._fields, ""), (self._errors, "_se")):
-            stacked = np.array(values).reshape(-1, len(names), rows, columns)
-            for place, (name, factor) in enumerate(names.items()):
-                found[f"{name}{suffix}"] = stacked[:, place] * factor
+        fields = np.array(self._fields).reshape(-1, len(names), rows, columns)
+        settled = fields[settle:]
+        scatter = settled.std(axis=0, ddof=1) if len(settled) >= 4 else np.full(fields.shape[1:], math.nan)
+        for place, (name, factor) in enumerate(names.items()):
+            found[name] = fields[:, place] * factor
+            found[f"{name}_se"] = np.broadcast_to(scatter[place] * factor, fields[:, place].shape)
         middle = slice(columns // 4, max(columns - columns // 4, columns // 4 + 1))
         late = found["horizontal_wind"][settle:, :, middle].mean(axis=2)
         if len(late) >= 4:
-            mean, error = block_average(late, min(20, len(late) // 2))
+            mean, error = overlapping_average(late, min(8, len(late) // 2))
             found |= {"layer_wind": mean, "layer_wind_se": error}
         return found
-
-
-def _left(within: float, single: float, looks: int) -> float:
-    """Return the variance of a mean over that of a single sample, from the sum of squares within the frame."""
-    share = 1.0 - within / (looks * single) if single > 0.0 else 1.0
-    return min(max(float(share), 1.0 / looks), 1.0)
 
 
 def _root(square: float) -> float:
