@@ -48,7 +48,7 @@ from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.instruments.flow import CORE
 from atmosbox.scene.knob import gravity, wall_temperature
 from atmosbox.scene.rounding import rounded
-from atmosbox.scene.statistics import growth_per_step, overlapping_average
+from atmosbox.scene.statistics import BlockAverage, growth_per_step, overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -369,14 +369,14 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         middle = 0.5 * settings.si.height
         warm = np.interp(middle, height, dataset.layer_temperature.values)
         found["layer_temperature_adiabatic"] = warm + np.interp(middle, height, fallen) - fallen
-    rates = box.growth(kT, pull)
-    begun = _linear(dataset, settings)
+    rates, begun = box.growth(kT, pull), _linear(dataset, settings)
+    found["roll_speed_theory"] = np.full(dataset.sizes["elapsed_time"], math.nan)
     if begun is not None and np.max(rates) > 0.0:
         first, last = begun
-        time = dataset.elapsed_time.values
-        grown = np.exp(np.max(rates) / box.scale.time * (time - time[last])) * float(dataset.roll_speed.values[last])
-        shown = np.arange(len(time)) <= last + (last - first) // 3
-        found["roll_speed_theory"] = np.where(shown, grown, math.nan)
+        since = dataset.elapsed_time.values - dataset.elapsed_time.values[last]
+        shown = np.arange(len(since)) <= last + (last - first) // 3
+        grown = float(dataset.roll_speed.values[last]) * np.exp(np.max(rates) / box.scale.time * since[shown])
+        found["roll_speed_theory"][shown] = grown
     return found
 
 
@@ -413,16 +413,13 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found += _breeze(late)
     else:
         found += _core(late, box, kT, pull, still=still)
-    square = np.sign(late.wind_speed.values) * late.wind_speed.values**2
-    wind = overlapping_average(square)
+    wind = overlapping_average(np.sign(late.wind_speed.values) * late.wind_speed.values**2)
     if still:
         found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
     elif float(wind.mean) > 0.0:
-        speed = math.sqrt(float(wind.mean))
-        error = 0.5 * float(wind.standard_error) / speed
-        found.append(
-            Headline("mean_wind_speed", speed, error, None, 0.0, CHANCE_ALONE, "m s-1", "m s-1", "speed of the wind")
-        )
+        root = np.sqrt(wind.mean)
+        speed = BlockAverage(root, 0.5 * wind.standard_error / root)
+        found.append(Headline.of_mean("mean_wind_speed", "speed of the wind", speed, None, "m s-1"))
     share, error = (float(dataset[f"tracer_share_aloft{end}"].values[-1]) for end in ("", "_se"))
     if math.isfinite(share):
         label = "from the floor to the upper half"
@@ -502,11 +499,15 @@ def _grown(dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float
     step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
     found = growth_per_step(dataset.roll_amplitude.values[first : last + 1, strongest])
     rate, slowed = (float(box.growth(kT, pull, cells=cells)[strongest]) / box.scale.time for cells in (False, True))
-    return Headline(
-        "growth_rate", float(found.mean) / step, float(found.standard_error) / step, rate,
-        abs(rate - slowed) + LINEAR**2 * abs(rate), "cells as wide as a mean free path make dsmc viscous", "s-1", "s-1",
+    return Headline.of_mean(
+        "growth_rate",
         f"growth of the roll with {int(dataset.mode.values[strongest])} half waves",
-    )  # fmt: skip
+        BlockAverage(found.mean / step, found.standard_error / step),
+        rate,
+        "s-1",
+        tolerance=abs(rate - slowed) + LINEAR**2 * abs(rate),
+        reason="cells as wide as a mean free path make dsmc viscous",
+    )
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

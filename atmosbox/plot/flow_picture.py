@@ -105,7 +105,7 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
     bar.set_label(f"temperature ({spelled('degC')})", fontsize=look.text)
     bar.locator = MaxNLocator(4)
     bar.ax.tick_params(labelsize=look.small)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
 
 
 def _means(dataset: xr.Dataset, first: int, last: int) -> list[NDArray[np.float64]]:

@@ -177,8 +177,14 @@ def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
     return replace(panel, lines=lines) if any(line.role == "data" for line in lines) else None
 
 
+def _known(dataset: xr.Dataset, name: str) -> bool:
+    """Tell whether a variable has a value, or is not in the file, which `draw` tells."""
+    return name not in dataset or bool(dataset[name].notnull().any())
+
+
 def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
     """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
     missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
-    missing |= {"roll_speed_theory"} - {str(name) for name in dataset.variables}  # known for an ideal gas alone
+    # nor theory that is known nowhere, such as the growth of rolls of discs
+    missing |= {line.y for line in panel.lines if line.role == "theory" and not _known(dataset, line.y)}
     return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))

@@ -21,7 +21,7 @@ wall_law            the energy of molecules that leave a wall; the heat between 
 barometric          how the density of a gas decreases with height
 column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
-convection          air between a warm floor and a cold ceiling: at rest, the adiabat, the onset of motion
+heated_below        air between a warm floor and a cold ceiling: at rest, the adiabat, the onset of motion
 stirred_column      how the temperature of a stirred column falls with height
 lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
@@ -61,7 +61,6 @@ from atmosbox.theory.collision import (
     mean_free_time,
 )
 from atmosbox.theory.column_temperature import column_temperature
-from atmosbox.theory.convection import Gas, RestState, adiabatic_lapse_rate, growth_rates, rayleigh_number, rest_state
 from atmosbox.theory.diffusion import (
     diffusivity_error,
     mixed_share,
@@ -106,6 +105,7 @@ from atmosbox.theory.evaporation import (
     wet_bulb_temperature,
 )
 from atmosbox.theory.finite_rate import DISSIPATION, Ascent
+from atmosbox.theory.heated_below import Gas, RestState, adiabatic_lapse_rate, growth_rates, rayleigh_number, rest_state
 from atmosbox.theory.humidity import (
     WATER_MASS_RATIO,
     density_temperature,
