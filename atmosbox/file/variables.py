@@ -41,7 +41,7 @@ VARIABLES: dict[str, Variable] = {
     **_declared(("speed",), ("speed", "m s-1", "speed of a molecule, middle of the bin"), ledger=True),
     **_declared(("energy",), ("energy", "J", "energy of a molecule of water above that of one at rest in the liquid, "
                  "middle of the bin"), ledger=True),
-    **_declared(("distance",), ("distance", "m", "distance from the left wall, middle of the bin"), ledger=True),
+    **_declared(("distance",), ("distance", "m", "distance from the left wall, middle of the bin"), axis="X", ledger=True),
     **_declared(("radius",), ("radius", "m", "radius of a drop"), ledger=True),
     **_declared(("mode",), ("mode", "1", "number of half waves across the box"), ledger=True),
     **_declared(("wall",), ("wall", "", "wall of the box"), dtype="U"),
