@@ -479,8 +479,8 @@ def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *,
 def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     """Return the wind from the cold to the warm side in the lower half, and back in the upper half."""
     wind = late.horizontal_wind.values
-    columns, rows = wind.shape[2], wind.shape[1]
-    middle = wind[:, :, columns // 4 : columns - columns // 4].mean(axis=2)
+    _, columns, rows = wind.shape
+    middle = wind[:, columns // 4 : columns - columns // 4].mean(axis=1)
     return (
         Headline.of_mean(
             "onshore_wind", "wind to the warm side, lower half",

@@ -41,7 +41,7 @@ VARIABLES: dict[str, Variable] = {
     **_declared(("speed",), ("speed", "m s-1", "speed of a molecule, middle of the bin"), ledger=True),
     **_declared(("energy",), ("energy", "J", "energy of a molecule of water above that of one at rest in the liquid, "
                  "middle of the bin"), ledger=True),
-    **_declared(("distance",), ("distance", "m", "distance from the left wall, middle of the bin"), axis="X", ledger=True),
+    **_declared(("distance",), ("distance", "m", "distance from the left wall, middle of the bin"), ledger=True),
     **_declared(("radius",), ("radius", "m", "radius of a drop"), ledger=True),
     **_declared(("mode",), ("mode", "1", "number of half waves across the box"), ledger=True),
     **_declared(("wall",), ("wall", "", "wall of the box"), dtype="U"),
@@ -222,13 +222,13 @@ VARIABLES: dict[str, Variable] = {
                 cell_methods=_MEAN, difference=True),
     # Air that turns over
     **_declared(
-        ("elapsed_time", "height", "distance"),
+        ("elapsed_time", "distance", "height"),
         ("cell_temperature", "K", "temperature of the air in a cell"),
         ("cell_number_density", "m-3", "number of molecules in a cubic metre of a cell"),
         ("cell_pressure", "Pa", "pressure of the air in a cell, by density, temperature and equation of state"),
         ("horizontal_wind", "m s-1", "wind away from the left wall"),
         ("upward_wind", "m s-1", "upward wind", "upward_air_velocity"),
-        cell_methods="elapsed_time: height: distance: mean",
+        cell_methods="elapsed_time: distance: height: mean",
     ),
     **_declared(
         _TIME,
@@ -236,8 +236,8 @@ VARIABLES: dict[str, Variable] = {
         ("roll_speed", "m s-1", "root mean square of the amplitudes of all rolls less their noise; negative likewise"),
         cell_methods=_MEAN,
     ),
-    **_declared(_TIME, ("core_lapse_rate", "K m-1", "lapse rate between three and seven tenths of the height",
-                        "air_temperature_lapse_rate"), cell_methods=_MEAN, difference=True),
+    **_declared(_TIME, ("core_lapse_rate", "K m-1", "lapse rate between three and seven tenths of the height"),
+                cell_methods=_MEAN, difference=True),
     **_declared((*_TIME, "mode"), ("roll_amplitude", "m s-1", "amplitude of the upward wind of rolls"),
                 cell_methods=_MEAN),
     **_declared(_TIME, ("tracer_share_aloft", "1", "share of the molecules from the floor that is in the upper half"),

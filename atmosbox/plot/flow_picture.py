@@ -110,7 +110,7 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
 
 def _means(dataset: xr.Dataset, first: int, last: int) -> list[NDArray[np.float64]]:
     """Return temperature [degC], wind and upward wind of each cell, as means over some frames."""
-    part = dataset.isel(elapsed_time=slice(first, last))
+    part = dataset.isel(elapsed_time=slice(first, last)).transpose(..., "height", "distance")
     names = ("cell_temperature", "horizontal_wind", "upward_wind")
     values = [np.ma.masked_invalid(part[name].values).mean(axis=0).filled(np.nan) for name in names]
     values[0] = convert(values[0], "K", "degC")

@@ -167,14 +167,14 @@ class Flow:
             "horizontal_wind": speed,
             "upward_wind": speed,
         }
-        fields = np.array(self._fields).reshape(-1, len(names), rows, columns)
+        fields = np.swapaxes(np.array(self._fields).reshape(-1, len(names), rows, columns), 2, 3)
         settled = fields[settle:]
         scatter = settled.std(axis=0, ddof=1) if len(settled) >= 4 else np.full(fields.shape[1:], math.nan)
         for place, (name, factor) in enumerate(names.items()):
             found[name] = fields[:, place] * factor
             found[f"{name}_se"] = np.broadcast_to(scatter[place] * factor, fields[:, place].shape)
         middle = slice(columns // 4, max(columns - columns // 4, columns // 4 + 1))
-        late = found["horizontal_wind"][settle:, :, middle].mean(axis=2)
+        late = found["horizontal_wind"][settle:, middle].mean(axis=1)
         if len(late) >= 4:
             mean, error = overlapping_average(late, min(8, len(late) // 2))
             found |= {"layer_wind": mean, "layer_wind_se": error}
