@@ -86,6 +86,9 @@ CASES: dict[str, dict[str, Any]] = {
 }
 """The cases by name, with the settings that have other defaults there."""
 
+TITLES = {"inversion": "Cold air lies below warm air", "stable": "The air stays at rest"}
+"""Titles of the temperature in cases in which the air does not turn over."""
+
 ladder = (
     Series("exact", "duration", (300, 600, 1200), {"molecules": 2000}),
     Series("stepped", "delta", (0.4, 0.2, 0.1), {"molecules": 2000, "duration": 300}),
@@ -521,7 +524,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         )  # fmt: skip
     else:
         profile = Panel(
-            "profile", "Turned over, the core is mixed" if settings.case == "rolls" else "Temperature and height",
+            "profile", TITLES.get(settings.case, "Turned over, the core is mixed"),
             (
                 Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
                 Line("layer_temperature_conduction", "height", "conducted, at rest", "theory"),

@@ -23,27 +23,29 @@ _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
 _BAR = 0.11  # width of the colour bar with its numbers, in widths of the page
 _ARROWS = 16  # greatest number of arrows along a box
 _AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
-_WORDS = ("start", "wind begins", "end")
 _TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the page and in heights of a screen
 
 
-def instants(dataset: xr.Dataset) -> list[tuple[int, int]]:
-    """Return the first and the last frame of three pictures: at the start, when wind has begun, and at the end.
+def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
+    """Return the first and the last frame of three pictures, at the start, in between and at the end, by their titles.
 
-    Wind has begun where it has half of its greatest speed for the first time; half-way if there is none.
+    If there is wind to the end, the picture in between is where it has half of its greatest speed for the first time.
 
     Examples
     --------
     >>> wind = ("elapsed_time", np.r_[np.zeros(15), np.arange(15.0)])
     >>> instants(xr.Dataset({"wind_speed": wind}))
-    [(0, 2), (22, 24), (28, 30)]
+    {'start': (0, 2), 'wind begins': (22, 24), 'end': (28, 30)}
     """
     frames = dataset.sizes["elapsed_time"]
     part = max(1, round(_SHARE * frames))
-    speed = np.convolve(dataset["wind_speed"].values, np.ones(part) / part, mode="same")
-    begun = int(np.argmax(speed > 0.5 * speed.max())) if speed.max() > 0.0 else frames // 2
-    begun = min(max(begun, part), max(frames - 2 * part, 0))
-    return [(0, part), (begun, begun + part), (frames - part, frames)]
+    speed = dataset["wind_speed"].values
+    smooth = np.convolve(speed, np.ones(part) / part, mode="same")
+    windy = bool((speed[-max(1, frames // 4) :] > 0.0).all())
+    between = int(np.argmax(smooth > 0.5 * smooth.max())) if windy else frames // 2
+    between = min(max(between, part), max(frames - 2 * part, 0))
+    middle = "wind begins" if windy else "half-way"
+    return {"start": (0, part), middle: (between, between + part), "end": (frames - part, frames)}
 
 
 def flow_height(dataset: xr.Dataset, look: Theme) -> float:
@@ -81,17 +83,17 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
     each = (1.0 - _BAR) * wide / 3.0
     width = min(0.9 * each, box * float(np.ptp(edges[0]) / np.ptp(edges[1])))
     base = 1.0 - (top + 1.5 * look.text + box) / high
-    pictures = [_means(dataset, *span) for span in instants(dataset)]
+    pictures = [_means(dataset, *span) for span in instants(dataset).values()]
     norm = Normalize(min(p[0].min() for p in pictures), max(p[0].max() for p in pictures))
     fastest = max(float(np.percentile(np.hypot(p[1], p[2]), 98.0)) for p in pictures)
     time = convert(dataset["elapsed_time_bnds"].values, str(dataset["elapsed_time"].attrs.get("units", "s")), "min")
-    for place, (span, picture) in enumerate(zip(instants(dataset), pictures, strict=True)):
+    for place, ((words, span), picture) in enumerate(zip(instants(dataset).items(), pictures, strict=True)):
         left = 4.2 * look.text + place * (each - 0.6 * look.text) + 0.5 * (0.9 * each - width)
         axes = drawing.add_axes((left / wide, base, width / wide, box / high))
         axes.set_in_layout(False)
         _draw(axes, edges, picture, norm, fastest, look)
         axes.set_title(
-            f"{_WORDS[place]}: {time[span[0], 0]:.0f} to {time[span[1] - 1, 1]:.0f} min", fontsize=look.text, pad=3.0
+            f"{words}: {time[span[0], 0]:.0f} to {time[span[1] - 1, 1]:.0f} min", fontsize=look.text, pad=3.0
         )
         if place:
             axes.set_yticklabels([])
@@ -102,7 +104,7 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
     holder = drawing.add_axes((bar_left, base, 0.012, box / high))
     holder.set_in_layout(False)
     bar = drawing.colorbar(ScalarMappable(norm, _COLOURS), cax=holder)
-    bar.set_label(f"temperature ({spelled('degC')})", fontsize=look.text)
+    bar.ax.set_title(spelled("degC"), fontsize=look.text, pad=3.0)
     bar.locator = MaxNLocator(4)
     bar.ax.tick_params(labelsize=look.small)
     bar.outline.set_visible(False)

@@ -13,6 +13,7 @@ from atmosbox.errors import FileError
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve
 from atmosbox.plot.draw import Entry, draw
+from atmosbox.plot.flow_picture import flow_height
 from atmosbox.plot.place import Draw, page
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.stroke import hollow_points
@@ -63,6 +64,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     heading = str(dataset.attrs.get("title", "")) if look.heading else ""
     small = footer(dataset) + explanation(dataset, panels)
     readings = [reading for each in headlines(dataset, panels) for reading in each]
+    if flow_height(dataset, look) and not look.grows:  # a slide has no room for more below the pictures of the wind
+        panels, readings = panels[:2], []
     return page(panels, look, dataset, painter(dataset, look), readings, small, heading)
 
 
