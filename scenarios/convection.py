@@ -70,7 +70,7 @@ CROWD = 14.0
 """Mean number of discs in a cell of the fields; there are at most 16 rows of cells."""
 IN_CELL = 8.0
 """Number of spheres in a cube of a mean free path."""
-LINEAR = 0.2
+LINEAR = 0.3
 """Share of its largest speed up to which a roll grows as theory says; it is slower by the square of this share."""
 
 CASES: dict[str, dict[str, Any]] = {
@@ -372,29 +372,31 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         middle = 0.5 * settings.si.height
         warm = np.interp(middle, height, dataset.layer_temperature.values)
         found["layer_temperature_adiabatic"] = warm + np.interp(middle, height, fallen) - fallen
-    rates, begun = box.growth(kT, pull), _linear(dataset, settings)
+    rates, last = box.growth(kT, pull), _linear(dataset, settings)
     found["roll_speed_theory"] = np.full(dataset.sizes["elapsed_time"], math.nan)
-    if begun is not None and np.max(rates) > 0.0:
-        first, last = begun
+    if last is not None and np.max(rates) > 0.0:
         since = dataset.elapsed_time.values - dataset.elapsed_time.values[last]
-        shown = np.arange(len(since)) <= last + (last - first) // 3
+        shown = np.arange(len(since)) <= last + last // 3
         grown = float(dataset.roll_speed.values[last]) * np.exp(np.max(rates) / box.scale.time * since[shown])
         found["roll_speed_theory"][shown] = grown
     return found
 
 
-def _linear(dataset: "xr.Dataset", settings: Settings) -> tuple[int, int] | None:
-    """Return the first and the last frame in which rolls grow as linear theory says, if they do."""
+def _noise(dataset: "xr.Dataset", molecules: int) -> float:
+    """Return the standard deviation of the amplitude of a roll in air at rest, the root of kT / mN [m/s]."""
+    warm = float(np.mean(dataset.air_temperature.values))
+    return math.sqrt(BOLTZMANN * warm / (DRY_AIR.molecule_mass * molecules))
+
+
+def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
+    """Return the last frame in which rolls grow as linear theory says, if they do."""
     speed = dataset.roll_speed.values
     reached = speed > LINEAR * np.nanmax(speed)
     if settings.start != "at-rest" or settings.sides == "warm-and-cold" or not reached.any():
         return None
     last = int(np.argmax(reached))
-    # each mode of thermal motion has the variance kT / mN
-    energy = BOLTZMANN * float(np.mean(dataset.air_temperature.values))
-    noise = math.sqrt(dataset.sizes["mode"] * energy / (DRY_AIR.molecule_mass * settings.molecules))
-    grew = last >= 6 and np.nanmax(speed) > 6.0 * noise
-    return (0, last) if grew else None
+    least = 6.0 * math.sqrt(dataset.sizes["mode"]) * _noise(dataset, settings.molecules)
+    return last if last >= 6 and np.nanmax(speed) > least else None
 
 
 def _at_rest(box: Box, kT: tuple[float, float], pull: float) -> bool:
@@ -427,9 +429,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if math.isfinite(share):
         label = "from the floor to the upper half"
         found.append(Headline("share_from_the_floor", share, error, None, 0.0, CHANCE_ALONE, "1", "percent", label))
-    begun = _linear(dataset, settings)
-    if begun is not None and not still and box.thin:
-        found.append(_grown(dataset, box, kT, pull, *begun))
+    last = _linear(dataset, settings)
+    if last is not None and not still and box.thin:
+        found += _grown(dataset, box, kT, pull, last, settings.molecules)
     return tuple(found)
 
 
@@ -496,21 +498,29 @@ def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     )  # fmt: skip
 
 
-def _grown(dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, first: int, last: int) -> Headline:
+def _grown(
+    dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, last: int, molecules: int
+) -> tuple[Headline, ...]:
     """Return the growth rate of the strongest roll while it is weak, beside that of linear theory."""
     strongest = int(np.argmax(np.abs(dataset.roll_amplitude.values[last])))
     step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
-    found = growth_per_step(dataset.roll_amplitude.values[first : last + 1, strongest])
+    square = float(box.waves[strongest]) ** 2 + (math.pi / box.height) ** 2
+    decay = float(box.gas.viscosity(box.density, 1.0)) / box.density * square / box.scale.time * step
+    weak = dataset.roll_amplitude.values[: last + 1, strongest]
+    found = growth_per_step(weak, _noise(dataset, molecules), decay)
+    if not math.isfinite(found.mean):
+        return ()
     rate, slowed = (float(box.growth(kT, pull, cells=cells)[strongest]) / box.scale.time for cells in (False, True))
-    return Headline.of_mean(
+    rolls = Headline.of_mean(
         "growth_rate",
         f"growth of the roll with {int(dataset.mode.values[strongest])} half waves",
         BlockAverage(found.mean / step, found.standard_error / step),
         rate,
         "s-1",
         tolerance=abs(rate - slowed) + LINEAR**2 * abs(rate),
-        reason="cells as wide as a mean free path make dsmc viscous",
+        reason="cells as wide as a mean free path make dsmc viscous, and rolls that have grown are slower",
     )
+    return (rolls,)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

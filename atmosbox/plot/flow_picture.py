@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from atmosbox.plot.pen import Pen
 from atmosbox.plot.theme import DARK, Theme
 from atmosbox.plot.unit import convert, spelled
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 __all__ = ["flow_height", "instants", "put_flow"]
 
 _COLOURS = "inferno"  # dark is cold, light is warm, in print too
 _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
 _BAR = 0.11  # width of the colour bar with its numbers, in widths of the page
+_SLOWEST = 0.15  # least speed of the longest arrow, in units of the thermal speed of a molecule
 _ARROWS = 16  # greatest number of arrows along a box
 _AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
 _TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the page and in heights of a screen
@@ -85,7 +87,10 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
     base = 1.0 - (top + 1.5 * look.text + box) / high
     pictures = [_means(dataset, *span) for span in instants(dataset).values()]
     norm = Normalize(min(p[0].min() for p in pictures), max(p[0].max() for p in pictures))
-    fastest = max(float(np.percentile(np.hypot(p[1], p[2]), 98.0)) for p in pictures)
+    # arrows of air at rest are short: a share of the speed of molecules is the least length of the longest
+    warm = float(np.mean([picture[0].mean() for picture in pictures])) + 273.15
+    thermal = math.sqrt(BOLTZMANN * warm / DRY_AIR.molecule_mass)
+    fastest = max(_SLOWEST * thermal, *(float(np.percentile(np.hypot(p[1], p[2]), 98.0)) for p in pictures))
     time = convert(dataset["elapsed_time_bnds"].values, str(dataset["elapsed_time"].attrs.get("units", "s")), "min")
     for place, ((words, span), picture) in enumerate(zip(instants(dataset).items(), pictures, strict=True)):
         left = 4.2 * look.text + place * (each - 0.6 * look.text) + 0.5 * (0.9 * each - width)
@@ -99,7 +104,8 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
             axes.set_yticklabels([])
         else:
             axes.set_ylabel("height (km)", fontsize=look.text)
-        axes.set_xlabel("width (km)", fontsize=look.text, labelpad=1.0)
+        key = f", longest arrow {fastest:.0f} m/s" if words == "end" else ""
+        axes.set_xlabel(f"width (km){key}", fontsize=look.text, labelpad=1.0)
     bar_left = (4.2 * look.text + 3.0 * (each - 0.6 * look.text)) / wide
     holder = drawing.add_axes((bar_left, base, 0.012, box / high))
     holder.set_in_layout(False)
@@ -134,7 +140,7 @@ def _draw(
         u, w = (
             each[:rows, :columns].reshape(rows // by, by, columns // by, by).mean(axis=(1, 3)) for each in (along, up)
         )
-        longest = 1.4 * float(x[1] - x[0]) if len(x) > 1 else float(np.ptp(edges[0]))
+        longest = float(x[1] - x[0]) if len(x) > 1 else float(np.ptp(edges[0]))
         axes.quiver(
             x, y, u, w, color="white", edgecolor=DARK, linewidth=0.15 * look.line, angles="xy", scale_units="xy",
             scale=max(fastest, 1e-30) / longest, width=0.009, pivot="middle",

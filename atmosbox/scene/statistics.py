@@ -203,31 +203,45 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     return BlockAverage(quick.mean, error)
 
 
-def growth_per_step(values: ArrayLike) -> BlockAverage:
-    r"""Return the factor by which an unstable fluctuation grows from value to value, as a logarithm, and its error.
+START = 3.0
+"""Least size of a fluctuation whose growth is measured, in units of its noise at rest."""
 
-    Noise drives the fluctuation at all times: :math:`a_{k+1} = e^s a_k + r_k`. The factor is that of the least squares,
-    :math:`\sum a_k a_{k+1} / \sum a_k^2`, in which large values count most, and its error follows from the scatter of
-    the :math:`r_k`.
+
+def growth_per_step(values: ArrayLike, noise: float, decay: float) -> BlockAverage:
+    r"""Return how fast an unstable fluctuation grows from value to value, as a logarithm, and its standard error.
+
+    It is the slope of the logarithm from where the fluctuation exceeds its noise at rest :math:`\sigma` three times for
+    good. Noise still drives it then: of :math:`da = s a\,dt` plus noise that keeps the variance :math:`\sigma^2`
+    against a decay at the rate :math:`\gamma`, the logarithm of the whole growth varies by :math:`\gamma / 9 s`.
 
     Parameters
     ----------
     values : (time,)
-        At least four values at equal intervals, of a single mode with its sign.
+        A single mode with its sign, at equal intervals, up to where it stops to grow as an exponential.
+    noise
+        Standard deviation of the mode in air at rest.
+    decay
+        Rate at which the mode decays in air at rest without buoyancy [1/interval].
+
+    Returns
+    -------
+    BlockAverage
+        Growth and error [1/interval]; not a number if there are fewer than four values beyond the noise.
 
     Examples
     --------
-    >>> found = growth_per_step(1.1 ** np.arange(20.0))
+    >>> found = growth_per_step(1.1 ** np.arange(60.0), 1.0, 0.1)
     >>> bool(abs(found.mean - np.log(1.1)) < 1e-12)
     True
     """
-    series = np.asarray(values, np.float64)
-    before, after = series[:-1], series[1:]
-    size = float(before @ before)
-    factor = float(before @ after) / size
-    scatter = float(np.sum((after - factor * before) ** 2)) / (len(before) - 1)
-    error = np.sqrt(scatter / size) / abs(factor)
-    return BlockAverage(np.log(np.maximum(factor, 1e-300)), error)
+    size = np.abs(np.asarray(values, np.float64))
+    small = np.flatnonzero(size < START * noise)
+    grown = np.log(size[small[-1] + 1 if len(small) else 0 :])
+    if len(grown) < 4:
+        return BlockAverage(np.array(np.nan), np.array(np.nan))
+    slope = float(np.polyfit(np.arange(len(grown)), grown, 1)[0])
+    error = np.sqrt(max(decay, 0.0) * abs(slope)) / START / max(float(grown[-1] - grown[0]), 1e-9)
+    return BlockAverage(np.array(slope), np.array(error))
 
 
 def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
