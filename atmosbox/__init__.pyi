@@ -207,6 +207,51 @@ def run(
 
 @overload
 def run(
+    scene: Literal["convection"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    case: Literal["rolls", "inversion", "sea-breeze", "stable"] = "rolls",
+    molecules: int | str = 7300,
+    floor_temperature: float | str = 270.0,
+    ceiling_temperature: float | str = -245.0,
+    gravity: float | str = 9.80665,
+    height: float | str = 13.5,
+    width: float | str = 2.0,
+    surface_pressure: float | str = 1013.25,
+    packing: float | str = 0.2,
+    sides: Literal["smooth", "periodic", "warm-and-cold"] = "smooth",
+    start: Literal["at-rest", "mixed"] = "at-rest",
+    tracers: Literal["floor", "chimney"] = "floor",
+    rotation: bool = False,
+    duration: float | str = 1000.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Why warm air rises: over a warm floor and below a cold ceiling, air begins to turn over.
+
+    case: which box: its other settings have their defaults from it; rolls or inversion or sea-breeze or stable
+    molecules: number of molecules; 50 to 1000000
+    floor_temperature [degC]: temperature of the floor, or of the warm side; -270 degC to 2000 degC
+    ceiling_temperature [degC]: temperature of the ceiling, or of the cold side; -270 degC to 2000 degC
+    gravity [m s-2]: acceleration of gravity; 0 m s-2 to 1000 m s-2
+    height [km]: height of the ceiling; 0.1 km to 100 km
+    width: width of the box in heights; 0.5 to 10
+    surface_pressure [hPa]: pressure at the floor of the air at rest; 1 hPa to 100000 hPa
+    packing: share of the plane that discs cover; 0.01 to 0.5
+    sides: the sides: smooth, periodic, or warm on the left and cold on the right with smooth floor and ceiling; smooth or periodic or warm-and-cold
+    start: the air at the start: at rest between floor and ceiling, or mixed, of one density and temperature; at-rest or mixed
+    tracers: which molecules are followed from half of the run on: those near the floor, or above a chimney in its middle; floor or chimney
+    rotation: whether spheres rotate, as molecules of air do; on the engine dsmc; on or off
+    duration [s]: how long to watch; 1 s to 1000000 s
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
     scene: Literal["evaporation"],
     *,
     out: str | os.PathLike[str] | None = None,

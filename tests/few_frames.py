@@ -8,6 +8,7 @@ FRAMES = {
     "atmosphere": (80, 14),
     "attraction": (75, 25),
     "condensation": (80, 14),
+    "convection": (60, 20),
     "diffusion": (60, None),
     "elastic-collisions": (240, 80),
     "evaporation": (200, None),

@@ -113,5 +113,5 @@ def test_every_run_that_a_page_suggests_is_understood():
         if scene in scenarios.names():
             settings = dict(word.split("=", 1) for word in words if re.fullmatch(r"[\w-]+=.+", word))
             changed = runner.prepare(scene, settings).settings.changed().keys()
-            # heating changes other defaults, too
-            assert changed <= settings.keys() or "heating" in settings, words
+            # heating and a case change other defaults, too
+            assert changed <= settings.keys() or {"heating", "case"} & settings.keys(), words

@@ -182,6 +182,8 @@ PARTS = [
     ("condensation", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
     ("condensation", "", {"molecules": 300, "drops": 2}, {}, {MOVES, SPINS, LIQUID, WALLS}),
     ("nuclei", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
+    ("convection", "", {"molecules": 300, "duration": 60}, {"gravity": 5.0}, {MOVES, FALLS, WALLS, GRAVITY}),
+    ("convection", "dsmc", {"molecules": 2000, "rotation": True}, {}, {MOVES, SPINS, FALLS, WALLS}),
     ("evaporation", "", {"molecules": 300, "pool": 60}, {}, {MOVES, SPINS, LIQUID, PISTON}),
     ("lifting-dry", "", DRY, {}, {MOVES, SPINS, PISTON}),
     ("lifting-dry", "", DRY | {"rotation": False}, {}, {MOVES, PISTON}),

@@ -199,6 +199,7 @@ CASES = [
         long=True,
     ),
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
+    Case("convection", {"molecules": 150, "duration": 400.0, "gravity": 0.0}, 24),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
     Case("diffusion", {"molecules": 800}, 24),
     Case("nuclei", {"molecules": 1500, "duration": 100.0}, 24, long=True),

@@ -123,7 +123,9 @@ def lifting():
 def everything():
     """Return a run with every variable that is declared."""
     coords = times(130) | bins("height", 20, 500.0) | bins("speed", 40, 50.0) | bins("energy", 60, 1e-21)
-    coords |= bins("distance", 20, 5e-9) | bins("radius", 30, 1e-10) | {"molecule": np.arange(40)}
+    coords |= (
+        bins("distance", 20, 5e-9) | bins("radius", 30, 1e-10) | {"molecule": np.arange(40), "mode": np.arange(6.0)}
+    )
     names = [name for name, declared in VARIABLES.items() if declared.dims != (name,)]
     frames = filled(names, coords, companions=())
     frames |= filled([name for name in names if VARIABLES[name].dims in (("height",), ("distance",))], coords)

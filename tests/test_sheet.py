@@ -38,6 +38,7 @@ SMALL = {
     "attraction": {"molecules": 100, "duration": "0.2 ns"},
     "atmosphere": {"molecules": 60, "duration": 20},
     "condensation": {"molecules": 500, "duration": "20 ns"},
+    "convection": {"molecules": 300, "duration": 60},
     "diffusion": {"molecules": 400},
     "elastic-collisions": {"duration": "6 s"},
     "evaporation": {"molecules": 1000, "pool": 200, "duration": "12 ns"},

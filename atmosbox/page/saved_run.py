@@ -160,7 +160,7 @@ def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str,
 def _held(dataset: xr.Dataset, name: str) -> bool:
     """Tell whether a run, which may have been stopped early, has values of a variable."""
     name = name.partition("[")[0]
-    return name in dataset.variables and dataset[name].size > 0
+    return name in dataset.variables and bool(dataset[name].notnull().any())
 
 
 def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str, Any]:

@@ -78,7 +78,9 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     panels = shared_panels(datasets)
     draw = _Painter(datasets, labels, look).draw
     small = _small(datasets) + explanation(datasets[0], panels)
-    return page(panels, look, datasets[0], draw, [], small, title)
+    # without the pictures of the wind, which would be those of the first run alone
+    first = datasets[0].drop_vars("upward_wind", errors="ignore")
+    return page(panels, look, first, draw, [], small, title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:

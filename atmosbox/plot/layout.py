@@ -13,6 +13,7 @@ from atmosbox.errors import FileError
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve
 from atmosbox.plot.draw import Entry, draw
+from atmosbox.plot.flow_picture import flow_height
 from atmosbox.plot.place import Draw, page
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.stroke import hollow_points
@@ -63,6 +64,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     heading = str(dataset.attrs.get("title", "")) if look.heading else ""
     small = footer(dataset) + explanation(dataset, panels)
     readings = [reading for each in headlines(dataset, panels) for reading in each]
+    if flow_height(dataset, look) and not look.grows:  # a slide has no room for more below the pictures of the wind
+        panels, readings = panels[:2], []
     return page(panels, look, dataset, painter(dataset, look), readings, small, heading)
 
 
@@ -177,7 +180,14 @@ def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
     return replace(panel, lines=lines) if any(line.role == "data" for line in lines) else None
 
 
+def _known(dataset: xr.Dataset, name: str) -> bool:
+    """Tell whether a variable has a value, or is not in the file, which `draw` tells."""
+    return name not in dataset or bool(dataset[name].notnull().any())
+
+
 def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
     """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
     missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
+    # nor theory that is known nowhere, such as the growth of rolls of discs
+    missing |= {line.y for line in panel.lines if line.role == "theory" and not _known(dataset, line.y)}
     return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))

@@ -21,6 +21,7 @@ from matplotlib.transforms import offset_copy
 
 from atmosbox.plot.caption import Reading, axis_labels
 from atmosbox.plot.draw import Entry
+from atmosbox.plot.flow_picture import flow_height, put_flow
 from atmosbox.plot.number_card import put_numbers
 from atmosbox.plot.pen import Pen
 from atmosbox.plot.theme import FAINT, Theme, style
@@ -101,12 +102,14 @@ def page(
         drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
         pen = Pen(drawing)
         top = put_heading(pen, heading, look)
-        top += put_numbers(pen, readings, look, top)
+        above = top + put_numbers(pen, readings, look, top)
+        top = above + flow_height(dataset, look)
         if look.grows:
             drawing.set_figheight(drawing.get_figheight() + top / 72)
         plates = put_panels(drawing, panels, look, dataset, draw) if panels else []
         put_footer(pen, small, look)
         settle(pen, plates, look, top)
+        put_flow(pen, dataset, look, above)
     return drawing
 
 

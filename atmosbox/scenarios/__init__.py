@@ -39,6 +39,7 @@ _ORDER = (
     "diffusion",
     "atmosphere",
     "lifting-dry",
+    "convection",
     "evaporation",
     "condensation",
     "nuclei",

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         Discs,
         DropSizes,
         Environment,
+        Flow,
         Instrument,
         Layers,
         Leaving,
@@ -57,7 +58,7 @@ _HOMES = {
     "engines": "EngineChoice",
     "headline": "Headline",
     "instruments": (
-        "LAWS Air Clusters Discs DropSizes Environment Instrument Layers Leaving "
+        "LAWS Air Clusters Discs DropSizes Environment Flow Instrument Layers Leaving "
         "Lift Mixing MoistLift Molecules Nuclei Readings Slab Speeds Water wall_laws"
     ),
     "panels": "Line Panel",
@@ -76,6 +77,7 @@ __all__ = [
     "DropSizes",
     "EngineChoice",
     "Environment",
+    "Flow",
     "Headline",
     "Instrument",
     "Layers",

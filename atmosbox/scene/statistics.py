@@ -203,6 +203,47 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     return BlockAverage(quick.mean, error)
 
 
+START = 3.0
+"""Least size of a fluctuation whose growth is measured, in units of its noise at rest."""
+
+
+def growth_per_step(values: ArrayLike, noise: float, decay: float) -> BlockAverage:
+    r"""Return how fast an unstable fluctuation grows from value to value, as a logarithm, and its standard error.
+
+    It is the slope of the logarithm from where the fluctuation exceeds its noise at rest :math:`\sigma` three times for
+    good. Noise still drives it then: of :math:`da = s a\,dt` plus noise that keeps the variance :math:`\sigma^2`
+    against a decay at the rate :math:`\gamma`, the logarithm of the whole growth varies by :math:`\gamma / 9 s`.
+
+    Parameters
+    ----------
+    values : (time,)
+        A single mode with its sign, at equal intervals, up to where it stops to grow as an exponential.
+    noise
+        Standard deviation of the mode in air at rest.
+    decay
+        Rate at which the mode decays in air at rest without buoyancy [1/interval].
+
+    Returns
+    -------
+    BlockAverage
+        Growth and error [1/interval]; not a number if there are fewer than four values beyond the noise.
+
+    Examples
+    --------
+    >>> found = growth_per_step(1.1 ** np.arange(60.0), 1.0, 0.1)
+    >>> bool(abs(found.mean - np.log(1.1)) < 1e-12)
+    True
+    """
+    size = np.abs(np.asarray(values, np.float64))
+    small = np.flatnonzero(size < START * noise)
+    grown = np.log(size[small[-1] + 1 if len(small) else 0 :])
+    if len(grown) < 4:
+        return BlockAverage(np.array(np.nan), np.array(np.nan))
+    slope = float(np.polyfit(np.arange(len(grown)), grown, 1)[0])
+    error = np.sqrt(max(decay, 0.0) * abs(slope)) / START / max(float(grown[-1] - grown[0]), 1e-9)
+    return BlockAverage(np.array(slope), np.array(error))
+
+
 def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
     r"""Return the largest distance between a measured distribution and the true one that is likely by chance.
 

@@ -145,7 +145,7 @@ class Recording:
         for instrument in self.instruments:
             readings.update(instrument.readings(setup.scale, rest))
         binned = ("height", "speed", "energy", "distance")
-        names = ("radius", *binned, *(f"{name}_bnds" for name in binned))
+        names = ("radius", "mode", *binned, *(f"{name}_bnds" for name in binned))
         coords = {name: readings.pop(name) for name in names if name in readings}
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)

@@ -21,6 +21,7 @@ wall_law            the energy of molecules that leave a wall; the heat between 
 barometric          how the density of a gas decreases with height
 column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
+heated_below        air between a warm floor and a cold ceiling: at rest, the adiabat, the onset of motion
 lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
 environment         the environment of a parcel: lapse rates, pressures and heights
@@ -103,6 +104,7 @@ from atmosbox.theory.evaporation import (
     wet_bulb_temperature,
 )
 from atmosbox.theory.finite_rate import DISSIPATION, Ascent
+from atmosbox.theory.heated_below import Gas, RestState, adiabatic_lapse_rate, growth_rates, rayleigh_number, rest_state
 from atmosbox.theory.humidity import (
     WATER_MASS_RATIO,
     density_temperature,
@@ -195,11 +197,14 @@ __all__ = [
     "CriticalPoint",
     "EvaporationEquilibrium",
     "FreeMolecularSlab",
+    "Gas",
     "IsobaricWater",
     "ParcelPath",
+    "RestState",
     "SimpleFluid",
     "VaporNumber",
     "adiabatic_index",
+    "adiabatic_lapse_rate",
     "barometric_density",
     "barometric_pressure",
     "cape_cin",
@@ -237,6 +242,7 @@ __all__ = [
     "free_molecular_slab",
     "gas_pressure",
     "gas_pressure_discs",
+    "growth_rates",
     "hard_sphere_isentrope",
     "height_of_pressure",
     "hertz_knudsen_flux",
@@ -273,6 +279,8 @@ __all__ = [
     "parcel_buoyancy",
     "parcel_path",
     "raining_path",
+    "rayleigh_number",
+    "rest_state",
     "saturation_mixing_ratio",
     "saturation_vapor_pressure",
     "saturation_vapor_pressure_iapws",

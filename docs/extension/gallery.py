@@ -38,6 +38,7 @@ FEW = {
     "lifting-sounding": {"molecules": 2500},
     "mountains": {"molecules": 2500},
     "elastic-collisions": {},
+    "convection": {"molecules": 3000},
     "attraction": {"molecules": 300},
     "diffusion": {"molecules": 3000},
     "nuclei": {"duration": 40},

@@ -21,6 +21,7 @@ SMALL = {
     "atmosphere": {"molecules": 200, "duration": 20},
     "attraction": {"molecules": 100, "duration": "0.02 ns"},
     "condensation": {"molecules": 300, "duration": "2 ns"},
+    "convection": {"molecules": 300, "duration": 50},
     "diffusion": {"molecules": 200, "duration": 1.0},
     "elastic-collisions": {"molecules": 20, "duration": "3 s"},
     "evaporation": {"molecules": 300, "pool": 60, "duration": "1 ns"},

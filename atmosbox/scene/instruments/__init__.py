@@ -10,6 +10,7 @@ from atmosbox.scene.instruments.condensate import Clusters
 from atmosbox.scene.instruments.disc_motion import Discs
 from atmosbox.scene.instruments.drop_size import DropSizes
 from atmosbox.scene.instruments.emitted import Leaving
+from atmosbox.scene.instruments.flow import Flow
 from atmosbox.scene.instruments.instrument import Instrument, Readings
 from atmosbox.scene.instruments.layer import Layers
 from atmosbox.scene.instruments.lifted_air import Environment, Lift
@@ -29,6 +30,7 @@ __all__ = [
     "Discs",
     "DropSizes",
     "Environment",
+    "Flow",
     "Instrument",
     "Layers",
     "Leaving",

@@ -31,6 +31,8 @@ class Layers:
         Number of layers; the box must count its virial in as many layers.
     memory
         Correlation time of the energy of the column [reduced time], see `atmosbox.scene.statistics.average_beside`.
+    columns
+        Number of parts of a layer whose mean motion is not counted as warmth: more than one if the air turns over.
     gas
         The name of one of several gases: only number density and temperature are measured then, as
         ``GAS_number_density`` and ``GAS_layer_temperature``, which the scene declares among its ``variables``.
@@ -39,9 +41,16 @@ class Layers:
     """
 
     def __init__(
-        self, number: int, memory: float = 0.0, *, gas: str = "", which: NDArray[np.bool_] | None = None
+        self,
+        number: int,
+        memory: float = 0.0,
+        *,
+        columns: int = 1,
+        gas: str = "",
+        which: NDArray[np.bool_] | None = None,
     ) -> None:
         self._number = number
+        self._columns = columns
         self._gas = gas
         self._which = which
         self._memory = memory
@@ -65,7 +74,21 @@ class Layers:
             snapshot = snapshot._replace(
                 position=snapshot.position[self._which], velocity=snapshot.velocity[self._which]
             )
-        self._sum += np.stack(layer_sample(measured, snapshot, self._number))
+        if self._columns > 1:
+            # each part of a layer is a layer of its own in a box as much higher
+            high, wide = float(parcel.length[2]), float(parcel.length[0])
+            x, z = snapshot.position[:, 0] / wide, snapshot.position[:, 2] / high
+            row, column = (
+                np.clip((share * parts).astype(np.int64), 0, parts - 1)
+                for share, parts in ((z, self._number), (x, self._columns))
+            )
+            parts = self._number * self._columns
+            measured = SimpleNamespace(length=(1.0, 1.0, parts), planar=parcel.planar, mass=parcel.mass)
+            place = np.stack([x, x, row * self._columns + column + 0.5], axis=1)
+            sums = np.stack(layer_sample(measured, snapshot._replace(position=place), parts))
+            self._sum += sums.reshape(3, self._number, self._columns).sum(axis=2)
+        else:
+            self._sum += np.stack(layer_sample(measured, snapshot, self._number))
         self._looks += 1
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:

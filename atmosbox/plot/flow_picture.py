@@ -1,0 +1,152 @@
+"""Air that turns over: its temperature in colours and its wind as arrows, at three instants, above the panels."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from atmosbox.plot.pen import Pen
+from atmosbox.plot.theme import DARK, Theme
+from atmosbox.plot.unit import convert, spelled
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+__all__ = ["flow_height", "instants", "put_flow"]
+
+_COLOURS = "inferno"  # dark is cold, light is warm, in print too
+_SHARE = 1 / 15  # of the frames, of which a picture shows the mean
+_BAR = 0.11  # width of the colour bar with its numbers, in widths of the page
+_SLOWEST = 0.15  # least speed of the longest arrow, in units of the thermal speed of a molecule
+_ARROWS = 16  # greatest number of arrows along a box
+_AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
+_TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the page and in heights of a screen
+
+
+def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
+    """Return the first and the last frame of three pictures, at the start, in between and at the end, by their titles.
+
+    If there is wind to the end, the picture in between is where it has half of its greatest speed for the first time.
+
+    Examples
+    --------
+    >>> wind = ("elapsed_time", np.r_[np.zeros(15), np.arange(15.0)])
+    >>> instants(xr.Dataset({"wind_speed": wind}))
+    {'start': (0, 2), 'wind begins': (22, 24), 'end': (28, 30)}
+    """
+    frames = dataset.sizes["elapsed_time"]
+    part = max(1, round(_SHARE * frames))
+    speed = dataset["wind_speed"].values
+    smooth = np.convolve(speed, np.ones(part) / part, mode="same")
+    windy = bool((speed[-max(1, frames // 4) :] > 0.0).all())
+    between = int(np.argmax(smooth > 0.5 * smooth.max())) if windy else frames // 2
+    between = min(max(between, part), max(frames - 2 * part, 0))
+    middle = "wind begins" if windy else "half-way"
+    return {"start": (0, part), middle: (between, between + part), "end": (frames - part, frames)}
+
+
+def flow_height(dataset: xr.Dataset, look: Theme) -> float:
+    """Return the height of the pictures with their titles [pt]; 0 if the run has no fields of the air."""
+    if "upward_wind" not in dataset:
+        return 0.0
+    wide, high = (72.0 * size for size in look.wide)
+    across, up = (float(np.ptp(dataset[f"{name}_bnds"].values)) for name in ("distance", "height"))
+    each = 0.9 * (1.0 - _BAR) * wide / 3.0 * up / across
+    return min(each, _TALLEST * wide if look.grows else _TALLEST_ON_SCREEN * high) + _AROUND * look.text
+
+
+def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
+    """Draw the three pictures in a row, below a distance from the upper end of the page [pt].
+
+    Parameters
+    ----------
+    pen : Pen
+        The pen of the page.
+    dataset : xarray.Dataset
+        The run; without the field ``upward_wind`` nothing is drawn.
+    look : Theme
+        The theme: sizes of type, lines and markers.
+    top : float
+        The distance [pt].
+    """
+    room = flow_height(dataset, look)
+    if not room:
+        return
+    drawing = pen.figure
+    wide, high = (72.0 * float(size) for size in drawing.get_size_inches())
+    bounds = [dataset[f"{name}_bnds"].values / 1000.0 for name in ("distance", "height")]
+    edges = [np.append(each[:, 0], each[-1, 1]) for each in bounds]
+    box = room - _AROUND * look.text
+    each = (1.0 - _BAR) * wide / 3.0
+    width = min(0.9 * each, box * float(np.ptp(edges[0]) / np.ptp(edges[1])))
+    base = 1.0 - (top + 1.5 * look.text + box) / high
+    pictures = [_means(dataset, *span) for span in instants(dataset).values()]
+    norm = Normalize(min(p[0].min() for p in pictures), max(p[0].max() for p in pictures))
+    # arrows of air at rest are short: a share of the speed of molecules is the least length of the longest
+    warm = float(np.mean([picture[0].mean() for picture in pictures])) + 273.15
+    thermal = math.sqrt(BOLTZMANN * warm / DRY_AIR.molecule_mass)
+    fastest = max(_SLOWEST * thermal, *(float(np.percentile(np.hypot(p[1], p[2]), 98.0)) for p in pictures))
+    time = convert(dataset["elapsed_time_bnds"].values, str(dataset["elapsed_time"].attrs.get("units", "s")), "min")
+    for place, ((words, span), picture) in enumerate(zip(instants(dataset).items(), pictures, strict=True)):
+        left = 4.2 * look.text + place * (each - 0.6 * look.text) + 0.5 * (0.9 * each - width)
+        axes = drawing.add_axes((left / wide, base, width / wide, box / high))
+        axes.set_in_layout(False)
+        _draw(axes, edges, picture, norm, fastest, look)
+        axes.set_title(
+            f"{words}: {time[span[0], 0]:.0f} to {time[span[1] - 1, 1]:.0f} min", fontsize=look.text, pad=3.0
+        )
+        if place:
+            axes.set_yticklabels([])
+        else:
+            axes.set_ylabel("height (km)", fontsize=look.text)
+        key = f", longest arrow {fastest:.0f} m/s" if words == "end" else ""
+        axes.set_xlabel(f"width (km){key}", fontsize=look.text, labelpad=1.0)
+    bar_left = (4.2 * look.text + 3.0 * (each - 0.6 * look.text)) / wide
+    holder = drawing.add_axes((bar_left, base, 0.012, box / high))
+    holder.set_in_layout(False)
+    bar = drawing.colorbar(ScalarMappable(norm, _COLOURS), cax=holder)
+    bar.ax.set_title(spelled("degC"), fontsize=look.text, pad=3.0)
+    bar.locator = MaxNLocator(4)
+    bar.ax.tick_params(labelsize=look.small)
+    bar.outline.set_visible(False)
+
+
+def _means(dataset: xr.Dataset, first: int, last: int) -> list[NDArray[np.float64]]:
+    """Return temperature [degC], wind and upward wind of each cell, as means over some frames."""
+    part = dataset.isel(elapsed_time=slice(first, last)).transpose(..., "height", "distance")
+    names = ("cell_temperature", "horizontal_wind", "upward_wind")
+    values = [np.ma.masked_invalid(part[name].values).mean(axis=0).filled(np.nan) for name in names]
+    values[0] = convert(values[0], "K", "degC")
+    return [np.where(np.isfinite(each), each, np.nanmean(each)) for each in values]
+
+
+def _draw(
+    axes: Axes, edges: list[NDArray[np.float64]], picture: list[NDArray[np.float64]], norm: Normalize,
+    fastest: float, look: Theme,
+) -> None:  # fmt: skip
+    """Draw the air at one instant; arrows stand for the mean of as many cells as make them few enough."""
+    warm, along, up = picture
+    axes.pcolormesh(edges[0], edges[1], warm, cmap=_COLOURS, norm=norm, rasterized=True)
+    by = math.ceil(warm.shape[1] / _ARROWS)
+    rows, columns = (size // by * by for size in warm.shape)
+    if rows and columns:
+        middle = [0.5 * (each[1:] + each[:-1]) for each in edges]
+        x, y = middle[0][:columns].reshape(-1, by).mean(axis=1), middle[1][:rows].reshape(-1, by).mean(axis=1)
+        u, w = (
+            each[:rows, :columns].reshape(rows // by, by, columns // by, by).mean(axis=(1, 3)) for each in (along, up)
+        )
+        longest = float(x[1] - x[0]) if len(x) > 1 else float(np.ptp(edges[0]))
+        axes.quiver(
+            x, y, u, w, color="white", edgecolor=DARK, linewidth=0.15 * look.line, angles="xy", scale_units="xy",
+            scale=max(fastest, 1e-30) / longest, width=0.009, pivot="middle",
+        )  # fmt: skip
+    axes.set_xlim(edges[0][0], edges[0][-1])
+    axes.set_ylim(edges[1][0], edges[1][-1])
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.tick_params(labelsize=look.small, length=2.0)

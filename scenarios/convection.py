@@ -1,0 +1,566 @@
+"""Why warm air rises: over a warm floor and below a cold ceiling, air begins to turn over.
+
+Thousands of hard discs fly in a tall box with gravity, in a plane as on a screen. The floor is hot, the ceiling cold.
+At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter, and after
+some minutes it rises in a plume, spreads below the ceiling, cools, and sinks at the sides: two rolls of wind. Nobody
+has told the molecules to do so: there is no parcel, no exchange and no prescribed ascent in this box.
+
+Air that rises expands and cools. It is still warmer than its new environment only if the temperature falls faster with
+height than in air that rises without heat, by the adiabatic lapse rate. Even then viscosity and conduction must be weak
+enough. Once the air turns over, the core cools less with height than it did at rest: it is mixed.
+
+With ``case`` the same box shows an inversion (a floor colder than the ceiling: what is released at the floor stays
+there), a sea-breeze (one side warm, the other cold: wind from the first moment on), or stable air (the same contrast
+with more gravity: it stays at rest).
+
+Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, one cell deep,
+that may rotate. Floor and ceiling are thermostats, the sides smooth or periodic. Left out: water, radiation, the
+rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km, because a box only some
+hundred molecules high is so viscous that air under a real lapse rate would stay at rest in it.
+"""
+
+import functools
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine import HeatBath, Periodic, RandomNumbers, Specular, maxwell_velocities, rotational_energies
+from atmosbox.errors import SettingError
+from atmosbox.scene import (
+    Air,
+    EngineChoice,
+    Flow,
+    Headline,
+    Layers,
+    Line,
+    Panel,
+    Scale,
+    SceneSettings,
+    Series,
+    Setup,
+    setting,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments.flow import CORE
+from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.rounding import rounded
+from atmosbox.scene.statistics import BlockAverage, growth_per_step, overlapping_average
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Why warm air rises"
+level = "first year"
+minutes = 15
+FRAMES = 120
+SETTLE = 80
+"""Number of frames left out of the means: until the air turns over steadily."""
+LEAST = 40
+"""Least number of frames for a headline."""
+HEIGHTS = 6.0
+"""Greatest height of the box, in scale heights half-way between the temperatures of floor and ceiling."""
+LOWEST = 4.0, 1.5
+"""Least height of the box, in diameters of discs and in mean free paths of spheres."""
+CROWD = 14.0
+"""Mean number of discs in a cell of the fields; there are at most 16 rows of cells."""
+IN_CELL = 8.0
+"""Number of spheres in a cube of a mean free path."""
+LINEAR = 0.3
+"""Share of its largest speed up to which a roll grows as theory says; it is slower by the square of this share."""
+
+CASES: dict[str, dict[str, Any]] = {
+    "rolls": {},
+    "inversion": {"floor_temperature": -60.0, "ceiling_temperature": 90.0, "tracers": "chimney"},
+    "sea-breeze": {
+        "floor_temperature": 127.0,
+        "ceiling_temperature": -101.0,
+        "sides": "warm-and-cold",
+        "molecules": 3300,
+    },
+    "stable": {"gravity": 33.0, "molecules": 30_000},
+}
+"""The cases by name, with the settings that have other defaults there."""
+
+TITLES = {"inversion": "Cold air lies below warm air", "stable": "The air stays at rest"}
+"""Titles of the temperature in cases in which the air does not turn over."""
+
+ladder = (
+    Series("exact", "duration", (300, 600, 1200), {"molecules": 2000}),
+    Series("stepped", "delta", (0.4, 0.2, 0.1), {"molecules": 2000, "duration": 300}),
+    Series("dsmc", "molecules", (5000, 20_000, 50_000)),
+)
+"""Runs worth comparing: more molecules make a higher box, in which air turns over more easily."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    case: str = setting("rolls", "", "which box: its other settings have their defaults from it", choices=tuple(CASES))
+    molecules: int = setting(7300, "1", "number of molecules", low=50, high=1_000_000)
+    floor_temperature: float = setting(
+        270.0, "degC", "temperature of the floor, or of the warm side", low=-270.0, high=2000.0
+    )
+    ceiling_temperature: float = setting(
+        -245.0, "degC", "temperature of the ceiling, or of the cold side", low=-270.0, high=2000.0
+    )
+    gravity: float = setting(9.80665, "m s-2", "acceleration of gravity", low=0.0, high=1000.0)
+    height: float = setting(13.5, "km", "height of the ceiling", low=0.1, high=100.0)
+    width: float = setting(2.0, "1", "width of the box in heights", low=0.5, high=10.0)
+    surface_pressure: float = setting(1013.25, "hPa", "pressure at the floor of the air at rest", low=1.0, high=1e5)
+    packing: float = setting(0.2, "1", "share of the plane that discs cover", low=0.01, high=0.5)
+    sides: str = setting(
+        "smooth",
+        "",
+        "the sides: smooth, periodic, or warm on the left and cold on the right with smooth floor and ceiling",
+        choices=("smooth", "periodic", "warm-and-cold"),
+    )
+    start: str = setting(
+        "at-rest",
+        "",
+        "the air at the start: at rest between floor and ceiling, or mixed, of one density and temperature",
+        choices=("at-rest", "mixed"),
+    )
+    tracers: str = setting(
+        "floor",
+        "",
+        "which molecules are followed from half of the run on: those near the floor, or above a chimney in its middle",
+        choices=("floor", "chimney"),
+    )
+    rotation: bool = setting(False, "", "whether spheres rotate, as molecules of air do; on the engine dsmc")
+    duration: float = setting(1000.0, "s", "how long to watch", low=1.0, high=1e6)
+
+    def __init__(self, /, **values: Any) -> None:
+        declared = {parameter.name: parameter for parameter in self.describe()}["case"]
+        super().__init__(**(CASES[str(declared.parse(values.get("case", declared.default)))] | values))
+
+    def check(self) -> None:
+        """Refuse a weight that would leave hardly any air below the ceiling."""
+        si = self.si
+        light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
+        most = math.floor(100.0 * HEIGHTS * light) / 100.0
+        if self.gravity > most:
+            raise SettingError(
+                "gravity",
+                f"{self.gravity:g} m/s2",
+                f"is so large that the box is more than {HEIGHTS:g} scale heights high",
+                f"give --set gravity={most:g} or less, or a lower height",
+            )
+
+
+class Box:
+    """The box in reduced units: mass in masses of a molecule, energy in kT half-way between floor and ceiling.
+
+    The unit of length is the diameter of a disc or, of the spheres of dsmc, their mean free path. A plane of discs
+    stands for a slab one unit thick.
+    """
+
+    def __init__(self, settings: Settings, engine: EngineChoice = EXACT) -> None:
+        si = settings.si
+        self.thin = engine.name == "dsmc"
+        n, aspect = settings.molecules, settings.width
+        density = IN_CELL if self.thin else 4.0 / math.pi * settings.packing
+        self.height = rounded(math.sqrt(n / (density * aspect)))
+        least = LOWEST[self.thin]
+        if self.height < least:
+            raise SettingError(
+                "molecules",
+                n,
+                f"are too few for a box {aspect:g} times as wide as high",
+                f"give --set molecules={math.ceil(least**2 * density * aspect)} or more",
+            )
+        self.width = rounded(self.height * aspect)
+        self.density = n / (self.height * self.width)
+        across = rounded((math.sqrt(2.0) * math.pi * self.density) ** -0.5) if self.thin else 1.0
+        self.gas = law.Gas((5 if settings.rotation else 3) if self.thin else 2, across, 1.0 if self.thin else 0.0)
+        energy = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature)
+        scale = Scale(si.height / self.height, DRY_AIR.molecule_mass, energy)
+        self.floor, self.ceiling = (
+            rounded(scale.reduced_temperature(kelvin)) for kelvin in (si.floor_temperature, si.ceiling_temperature)
+        )
+        self.gravity = rounded(si.gravity / scale.acceleration)
+        self.beside = settings.sides == "warm-and-cold"
+        self.walls = (0, 1) if self.beside else (4, 5)
+        self.waves = np.arange(1, 7) * (2 if settings.sides == "periodic" else 1) * math.pi / self.width
+        try:
+            pressure = float(self.rest().pressure[0])
+        except ValueError as error:
+            raise SettingError(
+                "packing", settings.packing, f"is too much: {error}", "give less packing or a warmer ceiling"
+            ) from error
+        self.scale = Scale(scale.length, scale.mass, energy, si.surface_pressure / (pressure * scale.pressure))
+        self.rows = int(min(max(round(math.sqrt(n / (CROWD * aspect))), 4), 16))
+        self.columns = int(min(max(round(aspect * self.rows), 4), 64))
+
+    def rest(self, kT: tuple[float, float] | None = None, gravity: float | None = None, *, cells: bool = False) -> Any:
+        """Return the air at rest; ``cells`` for that of dsmc, which conducts a little better for its cells."""
+        floor, ceiling = (self.floor, self.ceiling) if kT is None else kT
+        if self.beside:
+            floor = ceiling = 0.5 * (floor + ceiling)
+        gas = self.gas if cells else self.gas._replace(cell=0.0)
+        return _rest(gas, self.height, floor, ceiling, self.gravity if gravity is None else gravity, self.density)
+
+    def growth(self, kT: tuple[float, float], gravity: float, *, cells: bool = False) -> np.ndarray:
+        """Return the growth rates of rolls; NaN where no theory is known, for discs and between warm and cold sides."""
+        if not self.thin or self.beside:
+            return np.full(len(self.waves), math.nan)
+        gas = self.gas if cells else self.gas._replace(cell=0.0)
+        return np.array(_growth(gas, self.height, *kT, gravity, self.density, tuple(self.waves)))
+
+    def now(self, dataset: "xr.Dataset") -> tuple[tuple[float, float], float]:
+        """Return temperatures of the walls and gravity at the end of a run, which may have been changed by hand."""
+        kelvin = dataset.wall_temperature.values[-1]
+        kT = tuple(float(kelvin[wall]) / self.scale.temperature for wall in self.walls)
+        pull = float(dataset.gravity.values[-1]) / self.scale.acceleration if "gravity" in dataset else self.gravity
+        return (kT[0], kT[1]), pull
+
+
+_rest = functools.lru_cache(maxsize=32)(law.rest_state)
+
+
+@functools.lru_cache(maxsize=32)
+def _growth(
+    gas: law.Gas, height: float, floor: float, ceiling: float, pull: float, density: float, waves: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Return the growth rates of rolls of these wave numbers."""
+    return tuple(law.growth_rates(gas, height, floor, ceiling, pull, density, waves).tolist())
+
+
+def usual_engine(settings: Settings) -> str:
+    """Return the engine on which the box runs unless the user names another: theory knows the onset in an ideal gas."""
+    return "dsmc" if settings.case == "stable" else "exact"
+
+
+def _start(box: Box, settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> tuple[np.ndarray, np.ndarray]:
+    """Return the positions of the molecules, and their temperatures."""
+    n = settings.molecules
+    turn = settings.sides == "periodic"
+    edge = 0.5 * box.gas.diameter
+    if settings.start == "mixed" and not box.thin:
+        length = (box.width, 2.0, box.height)
+        place = engine.scatter(length, np.ones(n), rng, periodic=(turn, False, False), planar=True)
+        return place, np.ones(n)
+    rest = box.rest()
+    even = settings.start == "mixed"
+    density = np.ones_like(rest.density) if even else rest.density
+    below = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
+    below /= below[-1]
+    if box.thin:
+        share = rng.random((n, 3))
+        x, y, up = share[:, 0], share[:, 1], share[:, 2]
+        x = x if turn else edge / box.width + x * (1.0 - 2.0 * edge / box.width)
+        place = np.stack([x * box.width, y, np.interp(up, below, rest.height)], axis=1)
+    else:
+        # rows of discs as far apart as the air is thin, as near in a row as where it is densest
+        wide = box.width - (0.0 if turn else 1.0)
+        columns = max(int(wide * math.sqrt(float(density.max()))) + (0 if turn else 1), 1)
+        rows = -(-n // columns)
+        sites = np.sort(np.argsort(rng.random(rows * columns), kind="stable")[:n])
+        row, column = np.divmod(sites, columns)
+        x = column * wide / columns if turn else 0.5 + column * wide / max(columns - 1, 1)
+        place = np.stack([x, np.ones(n), np.interp((row + 0.5) / rows, below, rest.height)], axis=1)
+    inner = (place[:, 2] / box.height) * (box.height - 2.0 * edge) + edge
+    place[:, 2] = inner
+    kT = np.ones(n) if even else np.interp(inner, rest.height, rest.temperature)
+    return rounded(place), rounded(kT)
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the box at its start."""
+    box = Box(settings, engine)
+    if settings.rotation and not box.thin:
+        raise SettingError("rotation", True, "is not for the discs of a plane", "give --engine dsmc")
+    n, scale = settings.molecules, box.scale
+    rng = RandomNumbers(settings.seed)
+    position, kT = _start(box, settings, engine, rng)
+    planar = not box.thin
+    velocity = maxwell_velocities(kT, np.ones(n), rng, planar=planar, exact=True)
+    more: dict[str, Any] = {}
+    if box.thin and not {"cell", "occupancy"} & set(engine.options):  # unless the user wants others
+        engine = replace(engine, options={**engine.options, "cell": 1.0})
+    if settings.rotation:
+        more |= {"rotation": 2.0, "rotational_energy": rotational_energies(kT, np.full(n, 2.0), rng)}
+    warm, cold = HeatBath(box.floor), HeatBath(box.ceiling)
+    side, slab = (Periodic() if settings.sides == "periodic" else Specular()), (Specular() if planar else Periodic())
+    ends = (Specular(), Specular()) if box.beside else (warm, cold)
+    parcel = engine.make(
+        position,
+        velocity,
+        length=(box.width, 2.0 if planar else 1.0, box.height),
+        walls=(*((warm, cold) if box.beside else (side, side)), slab, slab, *ends),
+        diameter=np.full(n, box.gas.diameter),
+        gravity=box.gravity,
+        planar=planar,
+        layers=box.rows,
+        seed=settings.seed,
+        **more,
+    )
+    rest = box.rest()
+    path = 1.0 if box.thin else float(box.gas.free_path(box.density))
+    steep = (settings.si.floor_temperature - settings.si.ceiling_temperature) / settings.height
+    lapse = 1000.0 * float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * _lapse_unit(scale)
+    fastest = float(np.max(box.growth((box.floor, box.ceiling), box.gravity)))
+    # the time in which a box of this height conducts a difference away
+    spread = float(box.gas.conductivity(box.density, 1.0)) / (box.density * (0.5 * box.gas.freedom + 1.0))
+    memory = box.height**2 / (math.pi**2 * spread)
+    kind = "spheres of an ideal gas" if box.thin else f"discs {scale.length:.0f} m wide"
+    depth = f"a slab {scale.length:.0f} m thick" if box.thin else f"a plane, for a slab {scale.length:.0f} m thick"
+    onset = (
+        "none: theory of the onset is for an ideal gas, --engine dsmc"
+        if math.isnan(fastest)
+        else f"rolls grow by a factor e in {scale.time / fastest:.0f} s"
+        if fastest > 0.0
+        else "the air stays at rest"
+    )
+    return Setup(
+        parcel,
+        scale,
+        settings.si.duration / scale.time,
+        FRAMES,
+        (
+            Air("floor"),
+            Layers(box.rows, memory, columns=box.columns),
+            Flow(box.rows, box.columns, FRAMES // 2, chimney=settings.tracers == "chimney"),
+        ),
+        samples=8,
+        settle=SETTLE,
+        time_unit="s",
+        facts={
+            "box": f"{depth}, {settings.width * settings.height:.3g} km wide, {settings.height:g} km high",
+            "real molecules per simulated one": f"{scale.weight:.2g}",
+            "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
+            f"temperature falls by {steep:.3g} K/km if heat is conducted",
+            "adiabat": f"{lapse:.3g} K/km at the mean density",
+            "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
+            "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
+            "Knudsen number": f"{path / box.height:.2g}, mean free path in heights",
+            "onset by linear theory": onset,
+            "time": f"{settings.duration:g} s, of which the first {settings.duration * SETTLE / FRAMES:.0f} are left "
+            "out of the means",
+        },
+        knobs=(
+            *(
+                wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
+                for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
+            ),
+            gravity(parcel, scale, settings, low=0.0, high=50.0),
+        ),
+    )
+
+
+def _lapse_unit(scale: Scale) -> float:
+    """Return the unit of a lapse rate [K/m]."""
+    return scale.temperature / scale.length
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return the air at rest, the adiabat through the middle of the height, and how rolls begin to grow."""
+    box = Box(settings, used(dataset))
+    kT, pull = box.now(dataset)
+    rest = box.rest(kT, pull)
+    metre, kelvin = box.scale.length, box.scale.temperature
+    height = dataset.height.values
+    found = {"layer_temperature_conduction": np.interp(height, rest.height * metre, rest.temperature) * kelvin}
+    if "layer_temperature" in dataset:
+        density = dataset.number_density.values / box.scale.number_density
+        steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * _lapse_unit(box.scale)
+        fallen = np.concatenate([[0.0], np.cumsum(0.5 * (steps[1:] + steps[:-1]) * np.diff(height))])
+        middle = 0.5 * settings.si.height
+        warm = np.interp(middle, height, dataset.layer_temperature.values)
+        found["layer_temperature_adiabatic"] = warm + np.interp(middle, height, fallen) - fallen
+    rates, last = box.growth(kT, pull), _linear(dataset, settings)
+    found["roll_speed_theory"] = np.full(dataset.sizes["elapsed_time"], math.nan)
+    if last is not None and np.max(rates) > 0.0:
+        since = dataset.elapsed_time.values - dataset.elapsed_time.values[last]
+        shown = np.arange(len(since)) <= last + last // 3
+        grown = float(dataset.roll_speed.values[last]) * np.exp(np.max(rates) / box.scale.time * since[shown])
+        found["roll_speed_theory"][shown] = grown
+    return found
+
+
+def _noise(dataset: "xr.Dataset", molecules: int) -> float:
+    """Return the standard deviation of the amplitude of a roll in air at rest, the root of kT / mN [m/s]."""
+    warm = float(np.mean(dataset.air_temperature.values))
+    return math.sqrt(BOLTZMANN * warm / (DRY_AIR.molecule_mass * molecules))
+
+
+def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
+    """Return the last frame in which rolls grow as linear theory says, if they do."""
+    speed = dataset.roll_speed.values
+    reached = speed > LINEAR * np.nanmax(speed)
+    if settings.start != "at-rest" or settings.sides == "warm-and-cold" or not reached.any():
+        return None
+    last = int(np.argmax(reached))
+    least = 6.0 * math.sqrt(dataset.sizes["mode"]) * _noise(dataset, settings.molecules)
+    return last if last >= 6 and np.nanmax(speed) > least else None
+
+
+def _at_rest(box: Box, kT: tuple[float, float], pull: float) -> bool:
+    """Return whether theory says that the air stays at rest: also with the larger viscosity of dsmc."""
+    rates = box.growth(kT, pull)
+    return bool(np.isfinite(rates).all() and np.max(rates) < 0.0)
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return lapse rate, wind, heat and weight of the air, what rose from the floor, and the growth of rolls."""
+    box = Box(settings, used(dataset))
+    late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    if late.sizes["elapsed_time"] < LEAST:
+        return ()
+    kT, pull = box.now(dataset)
+    still = _at_rest(box, kT, pull)
+    found = [_weight(late, dataset, box)]
+    if box.beside:
+        found += _breeze(late)
+    else:
+        found += _core(late, box, kT, pull, still=still)
+    wind = overlapping_average(np.sign(late.wind_speed.values) * late.wind_speed.values**2)
+    if still:
+        found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
+    elif float(wind.mean) > 0.0:
+        root = np.sqrt(wind.mean)
+        speed = BlockAverage(root, 0.5 * wind.standard_error / root)
+        found.append(Headline.of_mean("mean_wind_speed", "speed of the wind", speed, None, "m s-1"))
+    share, error = (float(dataset[f"tracer_share_aloft{end}"].values[-1]) for end in ("", "_se"))
+    if math.isfinite(share):
+        label = "from the floor to the upper half"
+        found.append(Headline("share_from_the_floor", share, error, None, 0.0, CHANCE_ALONE, "1", "percent", label))
+    last = _linear(dataset, settings)
+    if last is not None and not still and box.thin:
+        found += _grown(dataset, box, kT, pull, last, settings.molecules)
+    return tuple(found)
+
+
+def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
+    """Return the force on the floor minus that on the ceiling, the weight of the air."""
+    force = late.wall_pressure.values
+    lasted = float(np.diff(dataset.elapsed_time_bnds.values[[-late.sizes["elapsed_time"], -1], [0, 1]])[0])
+    pull = box.now(dataset)[1]
+    per_area = box.density * box.height
+    inner = 1.0 - (0.0 if bool(np.isnan(force[0, 0])) else box.gas.diameter) / box.width
+    # the momentum at either end of the time is a matter of chance, with the variance N m kT
+    warm = float(np.mean(late.air_temperature.values)) / box.scale.temperature
+    chance = math.sqrt(2.0 * per_area * warm / box.width) / (lasted / box.scale.time)
+    weight = float(np.mean(force[:, 4] - force[:, 5]))
+    return Headline(
+        "weight_of_the_air", weight, chance * box.scale.pressure, pull * per_area / inner * box.scale.pressure,
+        0.0, CHANCE_ALONE, "Pa", "hPa", "pressure on the floor minus that on the ceiling",
+    )  # fmt: skip
+
+
+def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *, still: bool) -> tuple[Headline, ...]:
+    """Return the lapse rate of the core and the Nusselt number; theory is that of air at rest, if it stays at rest."""
+    rest, beside = box.rest(kT, pull), box.rest(kT, pull, cells=True)
+    rows = (np.arange(box.rows) + 0.5) / box.rows
+    inside = rows[(rows > CORE[0]) & (rows < CORE[1])]
+
+    def slope(state: Any) -> float:
+        at = np.interp(inside * box.height, state.height, state.temperature)
+        return -float(np.polyfit(inside * box.height, at, 1)[0]) * _lapse_unit(box.scale)
+
+    # Fourier's law holds as far as the temperature hardly changes within a mean free path
+    middle = len(rest.height) // 2
+    far = float(box.gas.free_path(rest.density[middle])) * abs(
+        float(np.gradient(rest.temperature, rest.height)[middle])
+    )
+    share = far / float(rest.temperature[middle])
+    reason = (
+        "cells of dsmc are as wide as a mean free path, in which the temperature changes" if still else CHANCE_ALONE
+    )
+    told = slope(rest) if still else None
+    lapse = Headline.of_mean(
+        "mean_core_lapse_rate", "lapse rate of the core", overlapping_average(late.core_lapse_rate.values), told,
+        "K m-1", "K/km", tolerance=abs(slope(beside) - told) + share * abs(told) if told else 0.0, reason=reason,
+    )  # fmt: skip
+    if not rest.heat:
+        return (lapse,)
+    heat = np.diff(late.heat_from_wall.values, axis=0) / np.diff(late.elapsed_time.values)[:, None]
+    unit = rest.heat * box.width * box.scale.total_energy / box.scale.time
+    passed = overlapping_average(0.5 * (heat[:, 4] - heat[:, 5]) / unit, min(20, len(heat) // 2))
+    nusselt = Headline.of_mean(
+        "nusselt_number", "heat, over that conducted at rest (Nusselt number)", passed, 1.0 if still else None, "1",
+        tolerance=abs(beside.heat / rest.heat - 1.0) + share if still else 0.0, reason=reason,
+    )  # fmt: skip
+    return lapse, nusselt
+
+
+def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
+    """Return the wind from the cold to the warm side in the lower half, and back in the upper half."""
+    wind = late.horizontal_wind.values
+    _, columns, rows = wind.shape
+    middle = wind[:, columns // 4 : columns - columns // 4].mean(axis=1)
+    return (
+        Headline.of_mean(
+            "onshore_wind", "wind to the warm side, lower half",
+            overlapping_average(-middle[:, : rows // 2].mean(axis=1)), None, "m s-1",
+        ),
+        Headline.of_mean(
+            "return_wind", "wind to the cold side, upper half",
+            overlapping_average(middle[:, rows // 2 :].mean(axis=1)), None, "m s-1",
+        ),
+    )  # fmt: skip
+
+
+def _grown(
+    dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, last: int, molecules: int
+) -> tuple[Headline, ...]:
+    """Return the growth rate of the strongest roll while it is weak, beside that of linear theory."""
+    strongest = int(np.argmax(np.abs(dataset.roll_amplitude.values[last])))
+    step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
+    square = float(box.waves[strongest]) ** 2 + (math.pi / box.height) ** 2
+    decay = float(box.gas.viscosity(box.density, 1.0)) / box.density * square / box.scale.time * step
+    weak = dataset.roll_amplitude.values[: last + 1, strongest]
+    found = growth_per_step(weak, _noise(dataset, molecules), decay)
+    if not math.isfinite(found.mean):
+        return ()
+    rate, slowed = (float(box.growth(kT, pull, cells=cells)[strongest]) / box.scale.time for cells in (False, True))
+    rolls = Headline.of_mean(
+        "growth_rate",
+        f"growth of the roll with {int(dataset.mode.values[strongest])} half waves",
+        BlockAverage(found.mean / step, found.standard_error / step),
+        rate,
+        "s-1",
+        tolerance=abs(rate - slowed) + LINEAR**2 * abs(rate),
+        reason="cells as wide as a mean free path make dsmc viscous, and rolls that have grown are slower",
+    )
+    return (rolls,)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return the temperature (or the wind) against height, the rolls and what rose from the floor against time."""
+    if settings.sides == "warm-and-cold":
+        profile = Panel(
+            "profile", "Below it blows to the warm side, above it back",
+            (Line("layer_wind", "height", "wind", error="layer_wind_se"),),
+            x_label="wind away from the warm side", x_unit="m s-1", y_label="height", y_unit="km",
+            headlines=("onshore_wind", "return_wind"),
+        )  # fmt: skip
+    else:
+        profile = Panel(
+            "profile", TITLES.get(settings.case, "Turned over, the core is mixed"),
+            (
+                Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
+                Line("layer_temperature_conduction", "height", "conducted, at rest", "theory"),
+                Line("layer_temperature_adiabatic", "height", "adiabat", "reference"),
+            ),
+            x_label="temperature", x_unit="degC", y_label="height", y_unit="km",
+            headlines=("mean_core_lapse_rate", "nusselt_number"),
+        )  # fmt: skip
+    rolls = Panel(
+        "line", "The wind",
+        (
+            Line("elapsed_time", "roll_speed", "rolls"),
+            Line("elapsed_time", "roll_speed_theory", "linear theory", "theory"),
+        ),
+        x_label="time", x_unit="min", y_label="speed of the rolls", headlines=("mean_wind_speed",),
+    )  # fmt: skip
+    released = Panel(
+        "line", "What is released at the floor",
+        (Line("elapsed_time", "tracer_share_aloft", "in the upper half"),),
+        x_label="time", x_unit="min", y_label="share aloft", y_unit="percent", headlines=("share_from_the_floor",),
+    )  # fmt: skip
+    return profile, rolls, released

@@ -1,0 +1,186 @@
+"""Convection: air at rest, the adiabat and the onset in theory; and in the box rolls, inversion, breeze, stable air."""
+
+import functools
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from atmosbox import theory
+from atmosbox.errors import AtmosboxError
+from atmosbox.scene.statistics import growth_per_step
+from atmosbox.simulation import runner
+
+SPHERES = theory.Gas(3, (math.sqrt(2.0) * math.pi) ** -0.5)  # mean free path 1 at density 1
+DISCS = theory.Gas(2, 1.0)
+TURNS = {"molecules": 4000, "gravity": 12.0, "width": 1.5, "duration": 800.0}
+"""A small box in which the air turns over."""
+
+
+@functools.cache
+def ran(engine=None, **settings):
+    return runner.execute(runner.prepare("convection", settings, engine=engine))
+
+
+def number(outcome, name):
+    return next(each for each in outcome.headlines if each.name == name)
+
+
+def test_the_critical_rayleigh_number_of_two_plates_is_that_of_boussinesq():
+    high, apart = 1e4, 0.02
+
+    def growth(rayleigh):
+        def state(gravity):
+            return theory.rest_state(SPHERES, high, 1.0 + apart / 2, 1.0 - apart / 2, gravity, 1.0, jump=0.0)
+
+        gravity = brentq(lambda g: theory.rayleigh_number(state(g)) - rayleigh, 1e-12, apart / high)
+        given = SPHERES, high, 1.0 + apart / 2, 1.0 - apart / 2, gravity, 1.0
+        return theory.growth_rates(*given, [3.117 / high], order=24, jump=0.0, slip=0.0)[0]
+
+    assert brentq(growth, 1650.0, 1750.0, xtol=0.05) == pytest.approx(1707.76, rel=5e-4)
+
+
+def test_at_rest_the_power_three_halves_of_the_temperature_is_linear_and_the_weight_is_carried():
+    state = theory.rest_state(SPHERES, 80.0, 1.9, 0.1, 0.02, 1.0)
+    power = state.temperature**1.5
+    assert np.ptp(np.diff(power)) < 1e-9
+    assert 0.0 < 1.9 - state.temperature[0] < 0.05 < state.temperature[-1] - 0.1 < 0.15  # jumps, of thin warm air less
+    for gas in (SPHERES, DISCS):
+        found = theory.rest_state(gas, 80.0, 1.5, 0.5, 0.02, 0.2)
+        weight = 0.02 * np.trapezoid(found.density, found.height)
+        assert found.pressure[0] - found.pressure[-1] == pytest.approx(weight, rel=1e-5)
+        assert weight == pytest.approx(0.02 * 80.0 * 0.2, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("packing", "lapse"), [(0.0, 0.5), (0.05, 0.4516), (0.1, 0.4064), (0.2, 0.3246), (0.3, 0.2536)]
+)
+def test_crowded_discs_that_rise_cool_less(packing, lapse):
+    assert theory.adiabatic_lapse_rate(DISCS, packing * 4.0 / math.pi, 1.0) == pytest.approx(lapse, abs=5e-5)
+
+
+def test_rolls_grow_where_the_temperature_falls_faster_than_the_adiabat_and_the_air_is_thin_enough():
+    waves = np.pi * np.arange(1, 7) / 160.0
+    weights = {gravity: gravity * 2.5 * 1.8 / 80.0 for gravity in (0.45, 0.6, 0.75, 0.9)}
+    found = {share: theory.growth_rates(SPHERES, 80.0, 1.9, 0.1, g, 1.0, waves) for share, g in weights.items()}
+    # an independent program, with 64 polynomials and the state at rest by shooting
+    assert found[0.45] == pytest.approx([0.0028, 0.0060, 0.0069, 0.0060, 0.0041, 0.0013], abs=6e-5)
+    assert found[0.6][:5] == pytest.approx([0.0017, 0.0044, 0.0048, 0.0034, 0.0007], abs=6e-5)
+    assert abs(found[0.75].max()) < 5e-4
+    assert found[0.9].max() < 0.0
+
+
+def test_the_growth_of_a_fluctuation_that_noise_drives_is_found_within_its_error():
+    rng = np.random.default_rng(5)
+    growth, decay, apart = 0.08, 0.1, []
+    while len(apart) < 300:
+        values = [0.0]
+        while abs(values[-1]) < 15.0:
+            kick = math.sqrt(2.0 * decay) * rng.normal()
+            values.append(math.exp(growth) * values[-1] + kick)
+        found = growth_per_step(values, 1.0, decay)
+        if math.isfinite(found.mean):
+            apart.append((found.mean - growth) / found.standard_error)
+    assert abs(np.mean(apart)) < 0.3
+    assert 0.6 < np.std(apart) < 1.2
+
+
+def test_air_turns_over_by_itself_its_core_is_mixed_and_its_energy_is_accounted_for():
+    outcome = ran(**TURNS)
+    data = outcome.dataset
+    assert number(outcome, "mean_wind_speed").value > 25.0
+    core, heat = number(outcome, "mean_core_lapse_rate"), number(outcome, "nusselt_number")
+    at_rest = -np.polyfit(data.height.values[5:11], data.layer_temperature_conduction.values[5:11], 1)[0]
+    assert core.theory is heat.theory is None  # nothing derived is known for discs
+    assert core.value + 4.0 * core.standard_error < at_rest
+    assert heat.value - 2.0 * heat.standard_error > 1.0
+    assert number(outcome, "weight_of_the_air").agrees
+    assert all(check.passed for check in runner.verify(data))
+    late = data.isel(elapsed_time=slice(80, None))
+    # warm air rises: where it goes up in the middle of the height it is warmer than where it goes down
+    middle = data.sizes["height"] // 2
+    up, warm = (late[name].values[:, :, middle].mean(axis=0) for name in ("upward_wind", "cell_temperature"))
+    assert np.corrcoef(up, warm)[0, 1] > 0.5
+    # the profile is the mean of the field
+    number_of = late.cell_number_density.values
+    profile = np.nansum(number_of * late.cell_temperature.values, axis=(0, 1)) / np.nansum(number_of, axis=(0, 1))
+    assert profile == pytest.approx(data.layer_temperature.values, rel=0.01)
+    density = number_of.mean(axis=(0, 1))
+    assert density == pytest.approx(data.number_density.values, rel=1e-6)
+    again = runner.execute(runner.prepare("convection", TURNS))
+    assert np.array_equal(again.dataset.upward_wind.values, data.upward_wind.values)
+
+
+def test_an_ideal_gas_under_more_weight_stays_at_rest_as_theory_says():
+    outcome = ran(case="stable", molecules=6000, duration=500.0)
+    assert {each.name for each in outcome.headlines} >= {"mean_square_wind", "nusselt_number", "mean_core_lapse_rate"}
+    for each in outcome.headlines:
+        assert each.agrees is not False, each
+    assert (
+        "stays at rest"
+        in dict(runner.card(runner.prepare("convection", {"case": "stable"})).facts)["onset by linear theory"]
+    )
+
+
+def test_below_an_inversion_little_of_the_smoke_rises():
+    inversion, open_air = ran(case="inversion", molecules=2000), ran(**TURNS)
+    smoke, mixed = (number(outcome, "share_from_the_floor") for outcome in (inversion, open_air))
+    assert smoke.value + 4.0 * smoke.standard_error < mixed.value
+    assert number(inversion, "mean_core_lapse_rate").value < 0.0
+
+
+def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_above():
+    outcome = ran(case="sea-breeze", molecules=2000, duration=400.0)
+    for name in ("onshore_wind", "return_wind"):
+        wind = number(outcome, name)
+        assert wind.value > 10.0
+        assert wind.value > 4.0 * wind.standard_error
+
+
+def test_the_cases_are_other_defaults_and_no_more():
+    settings = runner.prepare("convection", {"case": "sea-breeze", "molecules": 500}).settings
+    assert (settings.sides, settings.molecules, settings.gravity) == ("warm-and-cold", 500, 9.80665)
+    assert runner.prepare("convection", settings.as_dict()).settings == settings
+    assert str(runner.prepare("convection", {"case": "stable"}).engine) == "dsmc"
+
+
+@pytest.mark.parametrize(
+    ("settings", "engine", "refused"),
+    [
+        ({"floor_temperature": 20.0, "ceiling_temperature": 20.0}, None, ""),
+        ({"gravity": 0.0}, None, ""),
+        ({"floor_temperature": -50.0, "ceiling_temperature": 50.0}, None, ""),
+        ({"molecules": 50}, None, ""),
+        ({"molecules": 300, "width": 1.0}, None, ""),
+        ({"molecules": 300, "width": 10.0}, None, ""),
+        ({"molecules": 50, "width": 10.0, "packing": 0.4}, None, "molecules"),
+        ({"packing": 0.01}, None, ""),
+        ({"packing": 0.5}, None, "packing"),
+        ({"packing": 0.5, "floor_temperature": 50.0, "ceiling_temperature": 0.0, "start": "mixed"}, None, ""),
+        ({"floor_temperature": 300.0, "ceiling_temperature": -267.5}, None, ""),  # 100 : 1
+        ({"gravity": 500.0}, None, "gravity"),
+        ({"rotation": True}, None, "rotation"),
+        ({"rotation": True, "molecules": 2000, "sides": "periodic"}, "dsmc", ""),
+        ({"molecules": 50}, "dsmc", ""),
+        ({"sides": "periodic", "start": "mixed"}, None, ""),
+    ],
+)
+def test_what_is_extreme_is_right_or_refused_in_a_sentence(settings, engine, refused):
+    prepared = functools.partial(
+        runner.prepare, "convection", {"molecules": 400, "duration": 30.0} | settings, engine=engine
+    )
+    if refused:
+        with pytest.raises(AtmosboxError, match=f"^{refused}.*give ") as error:
+            runner.execute(prepared())
+        assert len(str(error.value).splitlines()) == 1
+        return
+    outcome = runner.execute(prepared())
+    data = outcome.dataset
+    assert outcome.ledger < runner.LEDGER_LIMIT
+    warm = np.sort(data.wall_temperature.values[-1][np.isfinite(data.wall_temperature.values[-1])])
+    at_rest = data.layer_temperature_conduction.values
+    assert ((at_rest >= warm[0] - 1e-6) & (at_rest <= warm[-1] + 1e-6)).all()
+    assert np.isfinite(data.layer_temperature_adiabatic.values).all()
+    pressure = data.air_pressure.values.mean()
+    assert 0.3 * 1013.25e2 < pressure < 3.0 * 1013.25e2
