@@ -77,7 +77,7 @@ class Gas(NamedTuple):
         if self.planar:
             thin = 1.029 * 2.0 / math.sqrt(math.pi) / self.diameter
             return thin * np.sqrt(as_floats(kT)) * self._crowded(density, 1.5, 0.8718)
-        # spheres that rotate, and share their energy evenly in every contact, conduct a quarter more (first approximation)
+        # spheres that rotate, and share their energy evenly in a contact, conduct a quarter more (first approximation)
         thin = 1.025218 * 75.0 / 64.0 / math.sqrt(math.pi) / self.diameter**2 * (1.25 if self.freedom > 3 else 1.0)
         return thin * np.sqrt(as_floats(kT)) * self._in_cells(density, 32.0 / 225.0)
 
