@@ -1,8 +1,7 @@
 """What may be changed while a box runs: its name, its range, and what changes in the box.
 
-A scene lists its knobs in its `Setup`, beside its instruments; ``atmosbox live`` makes a slider of each. Every other
-setting of the scene has a slider, too, but moving it starts the box again. A knob of your own is a `Knob` with a
-function; the functions below make the knobs that most boxes need.
+A scene lists its knobs in its `Setup`, beside its instruments. The page of `atmosbox.lab` has a slider for each that
+its kernels know; every other setting has a control, too, but changing it begins the box again.
 """
 
 from __future__ import annotations
