@@ -32,7 +32,6 @@ DOORS = {
         "atmosbox.sweep",
         "atmosbox.page",
         "atmosbox.film",
-        "atmosbox.live",
         "atmosbox.sheet",
     ),
     "trust": (

@@ -38,8 +38,8 @@ def browser_of(playwright):
     return playwright.chromium.launch(executable_path=next(filter(None, named), None), args=FLAGS.split())
 
 
-@job("live")
-def live(found: Findings) -> None:
+@job("lab")
+def lab(found: Findings) -> None:
     """Open a box that runs, turn its walls from 30 to 10 degrees, and look at it some seconds later."""
     from playwright.sync_api import sync_playwright
 
