@@ -18,7 +18,6 @@ from atmosbox.cli.option import (
     Config,
     Engine,
     Language,
-    PageTheme,
     SceneName,
     Seed,
     Source,
@@ -52,7 +51,6 @@ def live(
         bool,
         typer.Option("--no-token", help="Let in anybody on this computer, also without the token of the address."),
     ] = False,
-    theme: PageTheme = "auto",
     language: Language = "auto",
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
     quiet: Annotated[bool, quiet_option("Print the address, no more.")] = False,
@@ -73,7 +71,7 @@ def live(
 
     token = None if no_token else secrets.token_urlsafe(16)
     with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(prepared, show):
-        server = Server(prepared, port=number, token=token, theme=theme, language=language)
+        server = Server(prepared, port=number, token=token, language=language)
 
     def opened() -> None:
         say(server.address)

@@ -22,6 +22,7 @@ from urllib.parse import parse_qs, urlsplit
 from atmosbox.errors import AtmosboxError, SettingError
 from atmosbox.lab.lab_file import lab_data
 from atmosbox.lab.lab_start import served_start
+from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.page import lab_page
 from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.spelling import field_name
@@ -82,8 +83,8 @@ class Server(socketserver.ThreadingTCPServer):
     token
         Text that the address must contain, so that another account of the same computer cannot open the page; with
         None everybody on this computer is let in.
-    theme, language
-        Of the page.
+    language
+        Of the page, as `atmosbox.page.lab_page` takes it.
 
     Raises
     ------
@@ -107,17 +108,13 @@ class Server(socketserver.ThreadingTCPServer):
         *,
         port: int | None = None,
         token: str | None = None,
-        theme: str = "auto",
         language: str = "auto",
     ) -> None:
         self._written = prepared
-        presets = lesson_of(prepared.module).presets
-        self._texts = {
-            *prepared.settings.as_dict().values(),
-            *(text for each in presets for text in each.values.values()),
-        }
+        presets = [each.values for each in lesson_of(prepared.module).presets]
+        self._texts = [text for values in (prepared.settings.as_dict(), *presets) for text in values.values()]
         self.token = token
-        self.document = lab_page(*self._data(prepared), theme=theme, language=language, served=True)
+        self.document = lab_page(*self._data(prepared), language=language, served=True)
         for number in range(PORT, PORT + _TRIES) if port is None else [port]:
             try:
                 super().__init__((HOST, number), _Answer)
@@ -131,6 +128,11 @@ class Server(socketserver.ThreadingTCPServer):
         raise SettingError(
             "port", port, "is in use or not allowed", "give another, or leave --port out for a free one"
         ) from problem
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene."""
+        return self._written.scene
 
     @property
     def address(self) -> str:
@@ -197,7 +199,8 @@ class _Answer(BaseHTTPRequestHandler):
         try:
             return self._send(200, self.server.plan(settings), "application/json")
         except AtmosboxError as error:
-            error.reword(lambda words: words.replace("--set ", ""))
+            other = elsewhere(self.server.scene)
+            error.reword(lambda words: words.replace("--set ", "").replace("give --engine dsmc", other))
             return self._send(422, str(error))
         except Exception as error:
             return self._send(500, f"The box cannot be built ({type(error).__name__}: {error}).")

@@ -24,7 +24,7 @@ MODULES = (
     "frames.js",
     "clock.js",
     "molecules.js",
-    "furniture.js",
+    "walls.js",
     "labels.js",
     "trace.js",
     "camera.js",
