@@ -19,9 +19,9 @@ const say = (message) => postMessage(message);
 const refuse = (text) => say({ type: "note", level: "error", text });
 
 class Box {
-  // `plans` is the address at which Python makes plans of other boxes; null in a page that is a file.
-  constructor(starts, machine, plans) {
-    Object.assign(this, { starts, plans, start: starts.first, past: [], playing: false, pace: 1, watched: true, turned: [], seed: machine.plan.seed });
+  // `served` says whether Python serves the page, and makes plans of other boxes.
+  constructor(starts, machine, served) {
+    Object.assign(this, { starts, served, start: starts.first, past: [], playing: false, pace: 1, watched: true, turned: [], seed: machine.plan.seed });
     this.take(machine);
     this.begin();
     this.greet();
@@ -37,7 +37,7 @@ class Box {
 
   take(machine) {
     Object.assign(this, { machine, plan: machine.plan, told: machine.plan.told });
-    if (!this.plan.seeded || this.plans) this.seed = this.plan.seed;
+    if (!this.plan.seeded || this.served) this.seed = this.plan.seed;
   }
 
   begin() {
@@ -257,9 +257,9 @@ class Box {
 
   // Begin the box of a start: in a file the start's key, on a page that Python serves all settings. Return whether it begins.
   async change(start) {
-    const machine = this.plans ? await this.planned(start) : await this.starts.machine(start);
+    const machine = this.served ? await this.planned(start) : await this.starts.machine(start);
     if (!machine) return false;
-    const before = this.plans ? this.settings() : this.start;
+    const before = this.served ? this.settings() : this.start;
     this.take(machine);
     this.start = start;
     this.again();
@@ -270,15 +270,16 @@ class Box {
   // The machine of a box with other settings, which Python plans; null if it refuses them.
   async planned(settings) {
     say({ type: "state", busy: "The box is being built." });
-    const address = new URL(this.plans);
-    address.searchParams.set("settings", JSON.stringify(settings));
-    const answer = await fetch(address).catch(() => null);
-    if (answer?.ok) {
-      this.starts = await Starts.of(await answer.json());
-      return this.starts.machine(this.starts.first);
+    const told = await new Promise((answer) => {
+      this.answer = answer;
+      say({ type: "plan", settings });
+    });
+    if (told.refused) {
+      refuse(told.refused);
+      return null;
     }
-    refuse(answer ? await answer.text() : "atmosbox has ended, and only what acts at once can be changed: type atmosbox live once more.");
-    return null;
+    this.starts = await Starts.of(told);
+    return this.starts.machine(this.starts.first);
   }
 
   // The settings of a box that begins with the present seed, and with knobs as they are now.
@@ -294,7 +295,7 @@ class Box {
   // combination of this value with the present others: then the others become those with which the page was written, and
   // the reader is told so.
   async choose(name, value) {
-    if (this.plans) {
+    if (this.served) {
       await this.change({ ...this.settings(), [name]: value });
       return;
     }
@@ -314,7 +315,7 @@ class Box {
   async try(number) {
     const titles = this.told.lesson.presets;
     if (!(number in titles)) return;
-    if (this.plans) await this.change(this.plan.presets[number]);
+    if (this.served) await this.change(this.plan.presets[number]);
     else await this.change(number === 0 ? this.starts.first : titles[number]);
   }
 
@@ -408,7 +409,7 @@ async function hear(data) {
   try {
     if (data.type === "begin") {
       const starts = await Starts.of(data);
-      box = new Box(starts, await starts.machine(starts.first), data.plans);
+      box = new Box(starts, await starts.machine(starts.first), data.served);
     } else await box?.obey(data);
   } catch (error) {
     refuse(`The engine of this page has stopped: ${error.message}`);
@@ -418,4 +419,7 @@ async function hear(data) {
 
 // Messages are handled one after the other, so that a new box is complete before the next request.
 let heard = Promise.resolve();
-onmessage = ({ data }) => { heard = heard.then(() => hear(data)); };
+onmessage = ({ data }) => {
+  if (data.type === "planned") box.answer(data); // for the request that waits for it
+  else heard = heard.then(() => hear(data));
+};
