@@ -16,6 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 from atmosbox.cli import app
+from atmosbox.cli.request import gather, with_fewer_molecules
 from atmosbox.errors import SettingError
 from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.lab.lab_start import AS_WRITTEN
@@ -151,6 +152,27 @@ def test_what_cannot_be_is_refused_before_a_page_is_opened():
         done = CliRunner().invoke(app, ["live", "--no-browser", *words])
         assert done.exit_code in (1, 2)
         assert fault in done.output
+
+
+@pytest.mark.parametrize(
+    ("scene", "values", "taken", "said"),
+    [
+        (
+            "evaporation",
+            [],
+            {"molecules": 3000, "pool": 600},
+            "molecules=3000 and pool=600, fewer than a run",
+        ),
+        ("lifting-moist", ["humidity=80"], {"humidity": "80", "molecules": 3000}, "begins with molecules=3000"),
+        ("lifting-moist", ["molecules=500"], {"molecules": "500"}, ""),
+        ("temperature", [], {}, ""),
+    ],
+)
+def test_a_scene_of_many_molecules_begins_with_fewer_and_says_so(scene, values, taken, said, capsys):
+    asked = with_fewer_molecules(gather(scene, values))
+    assert (asked.settings, asked.engine) == (taken, "exact")
+    heard = capsys.readouterr().err
+    assert said in heard if said else not heard
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Windows are others")
