@@ -32,10 +32,8 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import ROUNDING
-from atmosbox.scene.knob import warmed_walls
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
-from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,16 +85,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     lightest = 0.01
     scale = Scale(si.side, lightest, lightest * si.speed**2)
-    rim = warmed_walls(
-        parcel,
-        settings,
-        "speed",
-        "speed at the start; once turned, that to which the rim brings the discs",
-        (0, 1, 4, 5),
-        lambda speed: 0.5 * float(mass.mean()) * (speed / scale.velocity) ** 2,
-        low=0.05,
-        high=2.0,
-    )
     return Setup(
         parcel,
         scale,
@@ -112,15 +100,13 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "gamma": "2: two degrees of freedom",
             "noise": f"the mean energy of {n // 2} discs scatters by {100.0 / math.sqrt(n + 1.0):.0f} % in each sample",
         },
-        knobs=(rim,),
     )
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the mean energy that all discs reach: that of the start, or that of a warm rim."""
+    """Return the mean energy that all discs reach, that of the start."""
     mean = dataset.kinetic_energy.values[0] / settings.molecules
-    rim = BOLTZMANN * dataset.wall_temperature.values[:, 0]
-    return {"kinetic_energy_light_theory": np.where(np.isfinite(rim), rim, mean)}
+    return {"kinetic_energy_light_theory": np.full(dataset.sizes["elapsed_time"], mean)}
 
 
 def _memory(dataset: "xr.Dataset") -> float:

@@ -129,21 +129,13 @@ def test_a_finished_run_that_cannot_take_its_name_stays_in_its_part(tmp_path):
     assert frames_in(checkpoint.part) == 5
 
 
-def test_an_abandoned_run_leaves_nothing_of_its_own(tmp_path):
-    checkpoint = Checkpoint(tmp_path / "run.nc")
-    checkpoint.save(run_so_far(3))
-    checkpoint.abandon()
-    checkpoint.abandon()
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_part_of_an_earlier_run_is_told_of_and_kept_until_it_is_replaced(tmp_path):
     killed = Checkpoint(tmp_path / "run.nc")
     killed.save(run_so_far(3))
     killed.release()
     checkpoint = Checkpoint(tmp_path / "run.nc")
     assert checkpoint.stale
-    checkpoint.abandon()
+    checkpoint.release()
     assert frames_in(checkpoint.part) == 3
     checkpoint.save(run_so_far(5))
     assert frames_in(checkpoint.part) == 5

@@ -46,8 +46,7 @@ LAYERS = {
         "version callable_room errors file scenarios scene simulation", "numpy xarray", lazily="distributed"
     ),
     "trade": Layer("version engine errors theory file scenarios scene simulation", "numpy xarray"),
-    "live": Layer("version engine errors theory file scene simulation page", "numpy websockets", lazily="xarray"),
-    "lab": Layer("version engine errors theory file scene simulation page live", "numpy", lazily="xarray"),
+    "lab": Layer("version engine errors theory file scene simulation page", "numpy", lazily="xarray"),
     "text": Layer("errors scene", "rich", lazily="simulation plot"),
     "callable_room": Layer(),
     "interface": Layer(

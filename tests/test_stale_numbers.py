@@ -42,7 +42,7 @@ def house(tmp_path):
     for name in (*source.PHYSICS, "sheet"):
         (tmp_path / "atmosbox" / name).mkdir(parents=True)
         (tmp_path / "atmosbox" / name / "law.py").write_text(f"def {name}(x):\n    return 2 * x\n")
-    (tmp_path / "atmosbox" / "live").mkdir()
+    (tmp_path / "atmosbox" / "lab").mkdir()
     (tmp_path / "atmosbox" / "scene" / "knob.py").write_text("STEP = 1\n")
     (tmp_path / "atmosbox" / "scene" / "sounding").mkdir()
     (tmp_path / "atmosbox" / "scene" / "sounding" / "format.py").write_text("COLUMNS = 7\n")
@@ -103,7 +103,7 @@ def test_an_edit_of_words_or_of_something_else_does_not(house, path, old, new):
 @pytest.mark.parametrize(
     ("path", "old", "new", "job", "meeting_it"),
     [
-        ("scene/knob.py", "STEP = 1", "STEP = 2", "import Findings, job", "import Findings, job\nimport atmosbox.live"),
+        ("scene/knob.py", "STEP = 1", "STEP = 2", "import Findings, job", "import Findings, job\nimport atmosbox.lab"),
         ("scene/sounding/format.py", "COLUMNS = 7", "COLUMNS = 8", '"lifting-dry"', '"lifting-sounding"'),
     ],
 )

@@ -21,7 +21,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import chosen, for_scene
-from atmosbox.cli.request import checked, gather
+from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
 from atmosbox.text.progress import progress
 
@@ -48,10 +48,10 @@ def lab(
     """Write a page in which a scene runs: the engine itself, in the browser.
 
     The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed that
-    it was written with, and gives the same numbers as run. Some knobs of live act in it; all other
-    settings are fixed when the page is written.
+    it was written with, and gives the same numbers as run. Its knobs act at once; of other settings it offers as many
+    values as fit into it. In the page that live opens, all settings can be changed.
     """
-    asked = gather(scene, values or (), config, source, seed, False, engine, accuracy).for_a_page()
+    asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
     with progress("lab", quiet=quiet) as show:
         prepared = checked(asked)
         path = chosen(out, for_scene(prepared.scene, "-lab.html"), force=force, quiet=quiet)

@@ -100,6 +100,22 @@ def checked(asked: Asked) -> Prepared:
     return made
 
 
+def with_fewer_molecules(asked: Asked) -> Asked:
+    """Return the request of a page in which a scene runs: on the exact engine, with as few molecules as suit watching.
+
+    Numbers that the user gave are kept; what was taken instead of the scene's own is said.
+    """
+    from atmosbox.lab.wasm_module import SCENES
+    from atmosbox.scene.spelling import field_name
+
+    few = SCENES.get(asked.scene.replace("_", "-"), {})
+    if not few or asked.accuracy is not None or {field_name(name) for name in asked.settings} & {"molecules", *few}:
+        return asked.for_a_page()
+    told = " and ".join(f"{name}={value}" for name, value in few.items())
+    tell(f"note: the page begins with {told}, fewer than a run has; give --set molecules=N for more")
+    return asked._replace(settings={**asked.settings, **few}).for_a_page()
+
+
 def is_path(scene: str) -> bool:
     """Return whether a scene is given by the path of its file rather than by its name."""
     return scene.endswith(".py") or "/" in scene or os.sep in scene

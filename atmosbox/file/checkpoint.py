@@ -88,7 +88,6 @@ class Checkpoint:
         self._clock = clock
         self._begun = self._written = clock()
         self._spent = self._last = 0.0
-        self._saved = False
         self._lock: OutputLock | None = None
 
     def _name(self, wanted: AnyPath) -> None:
@@ -174,7 +173,6 @@ class Checkpoint:
         """Write the run so far at once, for instance when the run is interrupted, and return the path of the part."""
         self.begin()
         write_dataset(self.part, dataset)
-        self._saved = True
         return self.part
 
     def finish(self, dataset: xr.Dataset) -> Path:
@@ -199,9 +197,3 @@ class Checkpoint:
             raise write_failure(error, self.path) from error
         self.release()
         return self.path
-
-    def abandon(self) -> None:
-        """Remove the part that this run has written, for a run that is not worth keeping."""
-        if self._saved:
-            self.part.unlink(missing_ok=True)
-        self.release()

@@ -25,7 +25,7 @@ from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_bench import hygrometer, liquid_sight, moisture
 from atmosbox.lab.start_recipe import no_start, start_of, watched
-from atmosbox.lab.wasm_module import module_name
+from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_bench import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
 from atmosbox.scene.instruments import (
@@ -128,9 +128,7 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     elif unknown:
         why = f"has an instrument that is not compiled for the page, {unknown[0]}"
     if why is not None:
-        raise SettingError(
-            "scene", prepared.scene, why, f"let it run with atmosbox live {prepared.scene}, or show a run with view"
-        )
+        raise SettingError("scene", prepared.scene, why, elsewhere(prepared.scene))
 
 
 def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> Bench:

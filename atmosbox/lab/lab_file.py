@@ -7,14 +7,15 @@ import gzip
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from atmosbox.file.output_path import check_writable, write_whole
-from atmosbox.lab.lab_start import lab_starts
+from atmosbox.lab.lab_start import Start, lab_starts
 from atmosbox.lab.wasm_module import module_bytes
 from atmosbox.page import lab_page
 from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["lab_text", "save_lab"]
+__all__ = ["lab_data", "lab_text", "save_lab"]
 
 _MOST_BYTES = 310_000
 """Largest size of the module and the starts of a page, compressed [bytes]: the page then stays below 1.5 MB."""
@@ -41,12 +42,18 @@ def lab_text(
     >>> "WebAssembly" in lab_text(prepare("temperature", {"molecules": 20}), others=False)
     True
     """
-    starts, needed = lab_starts(prepared, _MOST_BYTES if others else 0, progress)
-    module = module_bytes(needed, prepared.scene)
-    stored = gzip.compress(b"".join(each.stored() for each in starts), 9, mtime=0)
-    packed = (base64.b64encode(each).decode("ascii") for each in (module, stored))
-    title = str(starts[0].plan["told"]["stage"]["title"])
-    return lab_page(title, [each.size() for each in starts], *packed, theme=theme, language=language)
+    starts, module = lab_starts(prepared, _MOST_BYTES if others else 0, progress)
+    return lab_page(*lab_data(starts, module, prepared.scene), theme=theme, language=language)
+
+
+def lab_data(starts: list[Start], module: str, scene: str, *, level: int = 9) -> tuple[str, list[Any], str, str]:
+    """Return the title of a page, and as data for it the starts, their module, and their plans and memories.
+
+    ``level`` says how much time to spend on compressing them, from 1 to 9.
+    """
+    stored = gzip.compress(b"".join(each.stored() for each in starts), level, mtime=0)
+    packed = [base64.b64encode(each).decode("ascii") for each in (module_bytes(module, scene), stored)]
+    return str(starts[0].plan["told"]["stage"]["title"]), [each.size() for each in starts], packed[0], packed[1]
 
 
 def save_lab(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from atmosbox.file.variables import known
 from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.lab_stage import COLDER, lab_stage, plain, running_panels
 from atmosbox.lab.memory_image import BASE, Image, image
 from atmosbox.lab.moist_plan import (
     DROP_STATE,
@@ -22,16 +24,13 @@ from atmosbox.lab.moist_plan import (
 )
 from atmosbox.lab.seeding import is_the_seed_all, without_molecules
 from atmosbox.lab.theory_table import short_run, tables
+from atmosbox.lab.wasm_module import SCENES
 from atmosbox.lab.well_bench import drop_readings, has_bath
 from atmosbox.lab.work import arguments
-from atmosbox.live.control import controls
-from atmosbox.live.experiment import Experiment
-from atmosbox.live.gauge import FEW, gauges_of
-from atmosbox.live.lesson import lesson_of
-from atmosbox.live.picture import COLDER, Picture
-from atmosbox.live.summary import while_it_runs
-from atmosbox.live.trace import plain
 from atmosbox.page import ROUND
+from atmosbox.page.control import knob_controls
+from atmosbox.page.gauge import gauges
+from atmosbox.page.lesson import lesson_of
 from atmosbox.page.page_panel import declared
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import MOMENTS, Lift, MoistLift
@@ -47,6 +46,8 @@ __all__ = ["STATE", "lab_plan"]
 STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
 """The arrays that are equal, to the last bit, if two boxes are in the same state."""
 
+_CROSSINGS = 4.0
+_WHOLE = 60.0
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
 _FIGURES = 4
@@ -70,18 +71,14 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     >>> plan["molecules"], plan["size"] == memory.size, sorted(plan["knobs"])
     (20, True, ['temperature'])
     """
-    panels: list[tuple[Panel, ...]] = []
-    pictures: list[Picture] = []
+    panels, seen = running_panels(prepared), []
 
     def look(setup: Setup) -> Stage:
-        module = prepared.module
-        all_panels = module.panels(prepared.settings) if callable(module.panels) else module.panels
-        panels.append(tuple(panel for panel in map(while_it_runs, all_panels) if panel is not None))
-        pictures.append(Picture(prepared, setup, panels[-1]))
-        return pictures[-1].stage
+        seen.append(lab_stage(prepared, setup, panels))
+        return seen[-1][0]
 
     box = bench(prepared, look)
-    setup, stage = box.setup, pictures[0].stage
+    setup, (stage, fast) = box.setup, seen[0]
     is_seeded = is_the_seed_all(box)
     if is_seeded:
         box = without_molecules(box)
@@ -100,11 +97,10 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         readings = [each for each in readings if each[0] != "air_pressure"]
     if box.attracts:
         readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
-    shown = controls(found, [], {}, collisions=None)
     plan = {
         "told": {
             "stage": stage.record,
-            "controls": [control.record() for control in shown],
+            "controls": knob_controls(found),
             "lesson": _lesson(prepared, readings),
         },
         "base": BASE,
@@ -121,22 +117,22 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "samples": setup.samples,
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
-        "whole": setup.ends or _against_each_other(panels[-1], {name for name, _, _ in readings}),
-        "rate": Experiment(prepared, lambda: 0.0).rate,
+        "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
+        "rate": _rate(setup),
         "time": setup.scale.time / _SECONDS[setup.time_unit],
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
         # how the scale of speeds follows the temperature
         "scale": None
         if box.attracts
-        else {"swift": pictures[0].swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
+        else {"swift": fast, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
         "ledger": Reading.LEDGER.value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
-        "gauges": [] if box.gauges.half.size else _gauges(prepared, [name for name, _, _ in readings]),
+        "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
         "profiles": _profiles(box),
         "fixed": _fixed(box),
-        "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels[-1]),
+        "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels),
         "planned": planned_alone(box),
         "knobs": numbers,
         "units": {},
@@ -150,8 +146,25 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     return plan, memory, box
 
 
+def _rate(setup: Setup) -> float:
+    """Return the time of the box that passes in a second at the usual pace [reduced time].
+
+    A molecule crosses the box about four times in a second, but the whole run lasts at least a minute; an ascent lasts
+    exactly a minute.
+    """
+    parcel = setup.parcel
+    whole = setup.duration / _WHOLE
+    if setup.ends or not parcel.number:
+        return whole
+    kT = 2.0 * parcel.energy()[0] / (3.0 * parcel.number)
+    speed = math.sqrt(8.0 / math.pi * float(np.nanmax([kT, *parcel.wall_kT()])) / float(np.mean(parcel.mass)))
+    sides = parcel.length[[0, 2]] if parcel.planar else parcel.length
+    side = float(np.exp(np.log(sides).mean()))
+    return min(whole, _CROSSINGS * side / speed) if speed > 0.0 else whole
+
+
 def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
-    """Return whether a graph draws one series against another: see `live.summary.Report`."""
+    """Return whether a graph draws one series against another, so that all their values are sent each time."""
     times = readings - {"elapsed_time"}
     return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
 
@@ -212,26 +225,12 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
     return [(name, int(place), float(factor)) for name, place, factor in found]
 
 
-def _gauges(prepared: Prepared, names: list[str]) -> list[dict[str, Any]]:
-    """Return the gauges beside the box, as data for the page."""
-    return [
-        {"name": name, "variable": known, "unit": unit, "factor": factor, "offset": offset, **_few(name)}
-        for name, variables, unit, factor, offset in gauges_of(prepared.settings)
-        if (known := next((each for each in variables if each in names), None)) is not None
-    ]
-
-
-def _few(name: str) -> dict[str, Any]:
-    """Return the smallest number of molecules of saturated vapour, if this is a hygrometer: see `live.gauge`."""
-    return {"few": ["vapor_molecule_count", FEW]} if name == "hygrometer" else {}
-
-
 def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[str, Any]:
     """Return the challenges of the scene that can be met in the page; presets are left out."""
     names = {name for name, _, _ in readings}
-    told = lesson_of(prepared.module).record()
-    met = [each for each in told["challenges"] if names.issuperset(goal["name"] for goal in each["reach"])]
-    return {"presets": [], "pump": False, "challenges": met}
+    told = lesson_of(prepared.module).challenges
+    met = [each for each in told if names.issuperset(goal["name"] for goal in each["reach"])]
+    return {"presets": [], "challenges": met}
 
 
 def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
@@ -277,7 +276,8 @@ def _fixed(box: Bench) -> dict[str, Any]:
 def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
     setup = box.setup
-    kept = [knob for knob in setup.knobs if knob.name in _KNOBS]
+    # a knob of a user's own scene is a function in Python, of which the page knows nothing
+    kept = [knob for knob in setup.knobs if knob.name in _KNOBS and box.prepared.scene in SCENES]
     numbers: dict[str, Any] = {}
     for knob in kept:
         zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)

@@ -15,11 +15,12 @@ from typing import Any, NamedTuple
 from atmosbox.errors import AtmosboxError
 from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.lab.wasm_module import module_bytes
-from atmosbox.live.lesson import lesson_of
+from atmosbox.page.control import setting_controls
+from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.parameter import Parameter
 from atmosbox.simulation.preparation import Prepared, prepare
 
-__all__ = ["AS_WRITTEN", "Start", "lab_starts"]
+__all__ = ["AS_WRITTEN", "Start", "lab_starts", "served_start"]
 
 AS_WRITTEN = "as the page was written"
 """Name of the choice that leads back from a preset to the settings of the page."""
@@ -139,6 +140,42 @@ def lab_starts(
         presets += [title] if title else []
     _offer(prepared, made, presets)
     return made, box.module
+
+
+def served_start(prepared: Prepared, written: Prepared) -> tuple[Start, str]:
+    """Return the start of a page that Python serves, and the name of its module.
+
+    Every setting of the scene has a control, for the page asks for the plan of a box with any others.
+
+    Parameters
+    ----------
+    prepared
+        The scene with the settings that the page asks for.
+    written
+        The scene with those of the command, to which presets are added.
+
+    Raises
+    ------
+    AtmosboxError
+        If the box cannot be built, or cannot run in a page.
+
+    Examples
+    --------
+    >>> scene = prepare("elastic-collisions", {"molecules": 10})
+    >>> start, _ = served_start(scene, scene)
+    >>> [control["name"] for control in start.plan["told"]["controls"]][:3]
+    ['molecules', 'mass_ratio', 'filling']
+    """
+    plan, memory, box = lab_plan(prepared)
+    told, settings = plan["told"], prepared.settings
+    without = [control["name"] for control in told["controls"]] + (["seed"] if plan["seeded"] else [])
+    told["controls"] += setting_controls(settings.describe(), settings.as_dict(), without)
+    base = written.settings.changed()
+    presets = {AS_WRITTEN: base} | {each.title: base | dict(each.values) for each in lesson_of(prepared.module).presets}
+    told["lesson"]["presets"] = list(presets) if len(presets) > 1 else []
+    made = [type(settings).from_user(values) for values in presets.values()]
+    plan |= {"start": {}, "settings": settings.as_dict(), "presets": [each.as_dict() for each in made]}
+    return Start("", plan, _content(memory)), box.module
 
 
 def _key(values: dict[str, str]) -> str:

@@ -10,8 +10,8 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.lab.bench import Bench
 from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.lab_stage import plain
 from atmosbox.lab.moist_bench import bins_of, finer_at_kinks, theory_at
-from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import math
-import time
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.errors import SettingError
+from atmosbox.engine import StalledError
+from atmosbox.errors import EngineError, SettingError
+from atmosbox.lab.lab_stage import plain
 from atmosbox.lab.moist_plan import moist_tables
-from atmosbox.live.experiment import Experiment
-from atmosbox.live.trace import plain
+from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Lift
-from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.preparation import Prepared, build
+from atmosbox.simulation.recording import Recording
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,23 +39,28 @@ def short_run(prepared: Prepared) -> xr.Dataset:
 
     Raises
     ------
+    EngineError
+        If the engine cannot go on.
     SettingError
         If the modes of the engine change in these frames, because too many molecules crowd together for a page.
     """
-    box = Experiment(prepared, time.perf_counter)
-    parcel: Any = box.setup.parcel
-    modes, gauge = parcel._modes, box.gauges[0]
-    while gauge.frames < _FRAMES:
-        box.pass_time((box.frame + 1) * box.setup.frame, math.inf, tuple, lambda: True)
+    setup = build(prepared)
+    parcel: Any = setup.parcel
+    modes, run = parcel._modes, Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
+    try:
+        for _ in range(_FRAMES):
+            run.advance(lambda passed: None)
+    except StalledError as error:
+        raise EngineError(f"The box of {prepared.scene} cannot begin: {error}.") from error
     if parcel._modes != modes:
         raise SettingError(
             "scene",
             prepared.scene,
             "crowds so many molecules together that the page runs out of room for them",
-            f"let it run with atmosbox live {prepared.scene}, give it fewer molecules, or begin it where it comes to "
-            "rest, as atmosphere with --set start=equilibrium",
+            "give it fewer molecules, begin it where it comes to rest, as atmosphere with --set start=equilibrium, or "
+            + elsewhere(prepared.scene),
         )
-    found, _ = gauge.dataset("lab", settle=0, judged=False)
+    found, _ = run.dataset("lab", settle=0, judged=False)
     return found
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import code_of
 from atmosbox.errors import EngineError
 
-__all__ = ["BESIDE", "FOLDER", "SCENES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
+__all__ = ["BESIDE", "FOLDER", "SCENES", "elsewhere", "module_bytes", "module_name", "source_stamp", "stamp_of"]
 
 FOLDER = Path(__file__).parent / "modules"
 SCENES: dict[str, dict[str, Any]] = {
@@ -79,6 +79,17 @@ def stamp_of(content: bytes) -> str:
     return gzip.decompress(content).rpartition(b"sources")[2].decode("ascii")
 
 
+def elsewhere(scene: str) -> str:
+    """Return what to do with a scene that cannot run in a page, as the end of a sentence.
+
+    Examples
+    --------
+    >>> elsewhere("temperature")
+    'show a run of it: atmosbox run temperature --save-molecules, then atmosbox view'
+    """
+    return f"show a run of it: atmosbox run {scene} --save-molecules, then atmosbox view"
+
+
 def module_bytes(name: str, scene: str) -> bytes:
     """Return a module by its name, gzipped as it is in the package.
 
@@ -94,7 +105,7 @@ def module_bytes(name: str, scene: str) -> bytes:
         else:
             problem = (
                 f"The settings of {scene} need kernels that no WebAssembly module of this version has "
-                f"({name}): leave them as they are, or let the scene run with atmosbox live {scene}."
+                f"({name}): leave them as they are, or {elsewhere(scene)}."
             )
         raise EngineError(problem)
     return path.read_bytes()

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-__all__ = ["LANGUAGES", "MODULES", "THEMES", "lab_page", "live_page", "view_page", "words"]
+__all__ = ["LANGUAGES", "MODULES", "THEMES", "lab_page", "view_page", "words"]
 
 THEMES = ("auto", "light", "dark")
 
@@ -24,7 +24,7 @@ MODULES = (
     "frames.js",
     "clock.js",
     "molecules.js",
-    "furniture.js",
+    "walls.js",
     "labels.js",
     "trace.js",
     "camera.js",
@@ -44,8 +44,10 @@ MODULES = (
 )
 """Our scripts, each after the scripts that it imports."""
 
-_LIVE = ("link.js", "controls.js", "notes.js", "pulse.js", "gauges.js", "lesson.js", "live.js")
-_ENTRIES = {"view": ("view.js",), "live": _LIVE, "lab": (*_LIVE, "lab.js")}
+_ENTRIES = {
+    "view": ("view.js",),
+    "lab": ("controls.js", "notes.js", "player.js", "gauges.js", "lesson.js", "engine.js", "lab.js"),
+}
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 
 
@@ -83,31 +85,15 @@ def view_page(
     return _document("view", " · ".join(titles), theme, language, [told, *packed])
 
 
-def live_page(*, theme: str = "auto", language: str = "auto") -> str:
-    """Return the complete page that shows a box while it runs; it gets its data through the WebSocket ``/socket``.
-
-    Parameters
-    ----------
-    theme : {"auto", "light", "dark"}
-        Colours of the page.
-    language : {"auto", "en", "de", "es"}
-        Language of the page.
-
-    Returns
-    -------
-    str
-        The HTML.
-
-    Examples
-    --------
-    >>> "/socket" in live_page()
-    True
-    """
-    return _document("live", "atmosbox live", theme, language, [])
-
-
 def lab_page(
-    title: str, starts: Sequence[Any], module: str, stored: str, *, theme: str = "auto", language: str = "auto"
+    title: str,
+    starts: Sequence[Any],
+    module: str,
+    stored: str,
+    *,
+    theme: str = "auto",
+    language: str = "auto",
+    served: bool = False,
 ) -> str:
     """Return the complete page in which a box runs.
 
@@ -123,6 +109,8 @@ def lab_page(
         Colours of the page.
     language : {"auto", "en", "de", "es"}
         Language of the page.
+    served : bool
+        Whether the page may ask the server that it comes from for plans of boxes with other settings, at ``/plan``.
 
     Returns
     -------
@@ -136,12 +124,13 @@ def lab_page(
     """
     engine = "\n".join(_text("web", name) for name in ("lab_machine.js", "lab_worker.js"))
     data = [
+        *([_block("plans", "text/plain", "/plan")] if served else []),
         _block("starts", "application/json", _json(starts)),
         _block("module", "text/plain", module),
         _block("stored", "text/plain", stored),
         _block("worker", "text/plain", _inline(engine)),
     ]
-    return _document("lab", title, theme, language, data)
+    return _document("lab", title, theme, language, data, served=served)
 
 
 @functools.cache
@@ -156,7 +145,7 @@ def words(language: str) -> dict[str, Any]:
     return tomllib.loads(_text("language", f"{language}.toml"))
 
 
-def _document(entry: str, title: str, theme: str, language: str, data: Iterable[str]) -> str:
+def _document(entry: str, title: str, theme: str, language: str, data: Iterable[str], *, served: bool = False) -> str:
     """Return the HTML document that contains some data."""
     scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
     scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
@@ -171,8 +160,8 @@ def _document(entry: str, title: str, theme: str, language: str, data: Iterable[
         "TITLE": html.escape(title),
         "THEME": theme,
         "ENTRY": entry,
-        "CONNECT": "ws: wss:" if entry == "live" else "'none'",
-        "KIND": "live lab" if entry == "lab" else entry,
+        "CONNECT": "'self'" if served else "'none'",
+        "KIND": entry,
         "ALSO": " 'wasm-unsafe-eval'" if entry == "lab" else "",
         "STYLE": "\n".join((_text("vendor", "uplot", "uPlot.min.css"), _text("web", "theme.css"))),
         "UPLOT": _inline(_text("vendor", "uplot", "uPlot.iife.min.js")),

@@ -1,8 +1,7 @@
 """What may be changed while a box runs: its name, its range, and what changes in the box.
 
-A scene lists its knobs in its `Setup`, beside its instruments; ``atmosbox live`` makes a slider of each. Every other
-setting of the scene has a slider, too, but moving it starts the box again. A knob of your own is a `Knob` with a
-function; the functions below make the knobs that most boxes need.
+A scene lists its knobs in its `Setup`, beside its instruments. The page of `atmosbox.lab` has a slider for each that
+its kernels know; every other setting has a control, too, but changing it begins the box again.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.settings import SceneSettings
     from atmosbox.scene.units import Scale
 
-__all__ = ["Knob", "altitude", "gravity", "open_pool", "wall_temperature", "warmed_walls", "way"]
+__all__ = ["Knob", "altitude", "open_pool", "wall_temperature", "warmed_walls", "way"]
 
 
 @dataclass(frozen=True)
@@ -154,12 +153,12 @@ def warmed_walls(
     Examples
     --------
     >>> from atmosbox.simulation.preparation import build, prepare
-    >>> setup = build(prepare("elastic-collisions", {"molecules": 20}))
+    >>> setup = build(prepare("evaporation", {"molecules": 200, "pool": 40}))
     >>> bool(np.isnan(setup.parcel.wall_kT()).all())
     True
-    >>> setup.knobs[0].set(1.0)
+    >>> setup.knobs[0].set(20.0)
     >>> np.isfinite(setup.parcel.wall_kT()).tolist()
-    [True, True, False, False, True, True]
+    [True, True, True, True, False, False]
     >>> setup.knobs[0].reset()
     >>> bool(np.isnan(setup.parcel.wall_kT()).all())
     True
@@ -200,24 +199,6 @@ def open_pool(parcel: Any) -> Knob:
         parcel.set_open_pool(share)
 
     return Knob("open_pool", "share of the pool that is open; the rest is covered", "percent", 0.0, 100.0, 100.0, turn)
-
-
-def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float) -> Knob:
-    """Return the knob that sets the strength of gravity; see `wall_temperature` for the parameters.
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.preparation import build, prepare
-    >>> setup = build(prepare("atmosphere", {"molecules": 100}))
-    >>> setup.knobs[1].set(2.0 * 9.80665)
-    >>> round(setup.parcel.gravity, 6), setup.parcel.ledger() < 1e-12
-    (2.0, True)
-    """
-
-    def turn(acceleration: float) -> None:
-        parcel.set_gravity(acceleration / scale.acceleration)
-
-    return _of_setting(settings, "gravity", low, high, turn)
 
 
 def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:

@@ -59,33 +59,24 @@ def uninterrupted() -> Iterator[None]:
 
 @dataclass
 class Recording:
-    """A run in progress: its box, its instruments, and the times of its frames.
-
-    A recording may begin when some frames, `first` of them, have passed. Its instruments are then read once, so that
-    they count from that moment on, and this first reading is left out of the results.
-    """
+    """A run in progress: its box, its instruments, and the times of its frames."""
 
     prepared: Prepared
     setup: Setup
     attributes: dict[str, Any]
     times: list[float] = field(default_factory=lambda: [0.0])
     busy: float = 0.0
-    first: int = 0
     sampled: int = 0
-    instruments: tuple[Instrument, ...] = ()
+    instruments: tuple[Instrument, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         extra = (Molecules(self.setup.right),) if keeps_molecules(self.prepared, self.setup) else ()
-        self.instruments = (*(self.instruments or self.setup.instruments), *extra)
-        if self.first:
-            snapshot = self.setup.parcel.snapshot()
-            self.sample(snapshot)
-            self.end_frame(snapshot)
+        self.instruments = (*self.setup.instruments, *extra)
 
     @property
     def frames(self) -> int:
         """Number of complete frames."""
-        return len(self.times) - 1 - bool(self.first)
+        return len(self.times) - 1
 
     def sample(self, snapshot: Snapshot) -> None:
         """Let all instruments sample the molecules in their present state; an interrupt cannot come in between."""
@@ -105,7 +96,7 @@ class Recording:
     def advance(self, watch: Callable[[float], None]) -> None:
         """Advance to the end of the frame and measure; an interrupted frame continues with its next sample."""
         parcel = self.setup.parcel
-        frame = self.first + self.frames
+        frame = self.frames
         snapshot: Snapshot | None = None
         for sample in range(self.sampled + 1, self.setup.samples + 1):
             busy = time.process_time()
@@ -137,11 +128,10 @@ class Recording:
             name: Variable(name, tuple(dims.split()), unit, words)
             for name, (dims, unit, words) in getattr(module, "variables", {}).items()
         }
-        unseen = int(bool(self.first))
         in_unit = setup.scale.time / {"s": 1.0, "ns": 1e-9, "ps": 1e-12}[setup.time_unit]
         times = np.array(self.times) * in_unit
         readings = Readings()
-        rest = min(setup.settle if settle is None else settle, max(self.frames - 2, 0)) + unseen
+        rest = min(setup.settle if settle is None else settle, max(self.frames - 2, 0))
         for instrument in self.instruments:
             readings.update(instrument.readings(setup.scale, rest))
         binned = ("height", "speed", "energy", "distance")
@@ -150,17 +140,16 @@ class Recording:
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
         attributes = self.attributes | {"atmosbox_status": status}
-        seen = {"elapsed_time": slice(unseen, None)}
         measured = dataset(readings, coords, attributes, time_unit=setup.time_unit, own=own)
         if self.frames < 2:
-            return measured.isel(seen) if unseen else measured, ()
+            return measured, ()
         try:
             expected = module.theory(measured, settings)
             if not isinstance(expected, dict):
                 raise TypeError(f"theory returns a {type(expected).__name__}, and not a dict of arrays")
             full = extended(measured, expected, own=own)
-            if not judged or unseen:
-                return full.isel(seen) if unseen else full, ()
+            if not judged:
+                return full, ()
             headlines = module.headlines(full, settings)
             if not isinstance(headlines, tuple) or not all(isinstance(each, Headline) for each in headlines):
                 raise TypeError(f"headlines returns {headlines!r:.60}, and not a tuple of Headline")
@@ -169,4 +158,4 @@ class Recording:
         except (ArithmeticError, LookupError, ValueError):
             if status == "complete":
                 raise
-            return measured.isel(seen) if unseen else measured, ()  # too short for its theory, but worth keeping
+            return measured, ()  # too short for its theory, but worth keeping

@@ -32,7 +32,6 @@ DOORS = {
         "atmosbox.sweep",
         "atmosbox.page",
         "atmosbox.film",
-        "atmosbox.live",
         "atmosbox.sheet",
     ),
     "trust": ("atmosbox.scene.engines", "atmosbox.simulation.accuracy", "atmosbox.trade.tradeoff"),

@@ -38,12 +38,14 @@ def browser_of(playwright):
     return playwright.chromium.launch(executable_path=next(filter(None, named), None), args=FLAGS.split())
 
 
-@job("live")
-def live(found: Findings) -> None:
+@job("lab")
+def lab(found: Findings) -> None:
     """Open a box that runs, turn its walls from 30 to 10 degrees, and look at it some seconds later."""
     from playwright.sync_api import sync_playwright
 
-    words = [sys.executable, "-m", "atmosbox", "live", "evaporation", "--no-browser", "--quiet"]
+    # so many that there is a hygrometer at 10 degrees, too
+    many = ["--set", "molecules=6000", "--set", "pool=1200"]
+    words = [sys.executable, "-m", "atmosbox", "live", "evaporation", *many, "--no-browser", "--quiet"]
     with (
         tempfile.TemporaryDirectory() as folder,
         sync_playwright() as playwright,

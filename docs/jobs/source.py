@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PHYSICS = ("engine", "theory", "scene", "simulation")
 MET_BY: dict[str, tuple[str, ...]] = {
     "scene/ascent": ("lifting-dry", "lifting-moist", "lifting-sounding", "mountains"),
-    "scene/knob.py": ("live",),
+    "scene/knob.py": ("lab",),
     "scene/sounding": ("lifting-sounding",),
     "simulation/accuracy": (),
     "simulation/restart.py": (),

@@ -3,6 +3,7 @@
 import hashlib
 import io
 import json
+import re
 import shlex
 
 import numpy as np
@@ -11,9 +12,9 @@ import pytest
 from atmosbox.file.netcdf import read
 from atmosbox.lab import bench, save_lab
 from atmosbox.lab.lab_plan import STATE
+from atmosbox.lab.lab_stage import lab_stage
 from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.live.picture import Picture
 from atmosbox.simulation.preparation import build, prepare
 from atmosbox.simulation.recording import Recording
 from tests.in_process import typed
@@ -54,11 +55,11 @@ window.Worker = class extends Worker {
 class Lab:
     """The page of a scene in a tab of the browser; a fault in it fails the test."""
 
-    def __init__(self, tab, path):
+    def __init__(self, tab, address):
         self.page, self.faults = tab, []
         tab.on("pageerror", self._failed)
         tab.on("console", self._said)
-        tab.goto(path.as_uri())
+        tab.goto(address)
         tab.wait_for_selector("body[data-ready]", timeout=30_000)
 
     def _failed(self, error):
@@ -93,7 +94,7 @@ class Lab:
     def table(self):
         """Return the file that the page saves: its first lines, and the columns by name."""
         with self.page.expect_download() as saving:
-            self.page.click("#record")
+            self.page.click("#save")
         text = saving.value.path().read_text(encoding="utf-8")
         about = [line for line in text.splitlines() if line.startswith("#")]
         rest = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
@@ -133,7 +134,7 @@ def lab(new_tab, usual_tab, tmp_path):
         prepared = prepare(scene, SCENES[scene] | settings, engine="exact")
         path = save_lab(prepared, tmp_path / "lab.html", others=others, force=True)
         assert path.stat().st_size <= 1_500_000
-        opened.append(Lab(new_tab(**options) if options else usual_tab, path))
+        opened.append(Lab(new_tab(**options) if options else usual_tab, path.as_uri()))
         return opened[-1]
 
     yield show
@@ -147,6 +148,22 @@ def parts_of(frame):
     place = np.frombuffer(frame, "<u2", 3 * count, 32).astype(int)
     state = np.frombuffer(frame, np.uint8, count, 32 + 7 * count)
     return np.frombuffer(frame, "<f4", 3, 12), place, state, np.frombuffer(frame[36 + 8 * count :], "<f4")
+
+
+def python_frame(setup, stage):
+    """Return the same data as Python makes them of a box."""
+    parcel, snapshot, scale = setup.parcel, setup.parcel.snapshot(), setup.scale
+    position, speed = np.full((parcel.present.size, 3), np.nan), np.full(parcel.present.size, np.nan)
+    position[parcel.present] = snapshot.position * scale.length
+    speed[parcel.present] = np.sqrt(np.sum(snapshot.velocity**2, axis=1)) * scale.velocity
+    drops = None
+    if hasattr(parcel, "drops"):
+        centre, radius, _ = parcel.drops()
+        drops = np.column_stack([centre, radius]) * scale.length
+    liquid, rained = (int(getattr(parcel, name, 0)) for name in ("liquid", "rained"))
+    return stage.frame(
+        0, 0.0, parcel.length * scale.length, position, speed, drops=drops, liquid=liquid, rained=rained
+    )  # fmt: skip
 
 
 def advance(setup, frames, first=0):
@@ -198,7 +215,7 @@ def test_the_page_has_the_same_bytes_as_python_with_another_seed_and_measures_th
     shown.ask(type="frames", value=frames)
     prepared = prepare(scene, SCENES[scene] | another, engine="exact")
     setup = build(prepared)
-    recording, picture = Recording(prepared, setup, {}), Picture(prepared, setup, ())
+    recording, (stage, _) = Recording(prepared, setup, {}), lab_stage(prepared, setup, ())
     for frame in range(frames):
         for sample in range(1, setup.samples + 1):
             setup.parcel.advance(setup.moment(frame, sample))
@@ -208,7 +225,7 @@ def test_the_page_has_the_same_bytes_as_python_with_another_seed_and_measures_th
     if hasattr(setup.parcel, "vapour"):
         assert min(setup.parcel.condensed, setup.parcel.evaporated) > 20
     assert shown.digest() == state_of(setup.parcel)
-    for seen, expected in zip(shown.frame(), parts_of(picture.frame(0)), strict=True):
+    for seen, expected in zip(shown.frame(), parts_of(python_frame(setup, stage)), strict=True):
         # places are rounded to 16 bits; exact halves may be rounded up or down
         np.testing.assert_allclose(seen, expected, rtol=1e-6, atol=int(seen.dtype == int))
     _, table = shown.table()
@@ -315,7 +332,7 @@ def test_the_temperature_of_the_walls_acts_and_the_saved_table_says_so(lab):
     shown.ask(type="frames", value=160)
     about, after = shown.table()
     assert not any("repeats this run" in line for line in about)
-    assert any("temperature = 300" in line for line in about)
+    assert any(line.startswith("# in frame 61, at ") and line.endswith("temperature = 300 degC") for line in about)
     assert after["wall_temperature[z_low]"][-1] == pytest.approx(573.15)
     # 40 frames of 250 molecules scatter by less than 20 K, whatever their correlation
     assert before["air_temperature"][-20:].mean() == pytest.approx(298.15, abs=30.0)
@@ -537,8 +554,41 @@ def test_a_box_that_runs_for_long_takes_no_more_memory(lab):
     assert "# every 8th frame" in about
 
 
-def test_on_a_phone_nothing_is_wider_than_the_screen(lab):
-    shown = lab("temperature", {"molecules": 50}, size=(390, 844), has_touch=True)
-    assert shown.page.evaluate("document.documentElement.scrollWidth") <= 390
-    shown.page.tap("#play")
-    shown.page.wait_for_selector("body[data-playing=true]")
+def test_a_challenge_is_judged_by_what_has_been_measured(lab):
+    shown = lab("lifting-dry", {"molecules": 1000, "ascent": 400, "temperature": 44.8})
+    shown.page.click("text=Challenge 1")
+    shown.ask(type="frames", value=40)
+    shown.page.locator(".challenge.reached").wait_for(timeout=60_000)
+    assert re.search(r"Reached: 30\d hPa, −(47|48)\.\d °C\.", shown.page.locator(".verdict").inner_text())
+
+
+def test_what_is_measured_can_be_heard(lab):
+    page = lab("temperature", {"molecules": 50}).page
+    page.click("#play")
+    page.locator("#gauges output").first.wait_for(timeout=10_000)
+    assert page.get_by_role("group", name="what is measured now").count() == 1
+    page.keyboard.press("m")
+    heard = page.locator("#voice").inner_text()
+    assert re.fullmatch(r"[\d.]+ ns: temperature −?[\d.]+ °C, pressure \d+ hPa", heard)
+
+
+@pytest.mark.parametrize("size", [(390, 844), (1024, 768)])
+def test_on_a_small_screen_everything_is_whole_and_nothing_lies_on_another(lab, size):
+    shown = lab("temperature", {"molecules": 50}, size=size, has_touch=True, locale="de-DE")
+    page, wide = shown.page, size[0]
+    assert page.evaluate("document.documentElement.scrollWidth") <= wide
+    for group in ("footer > *", "#lesson .tries > *", "#controls .setting > *", "#tools > *"):
+        boxes = page.evaluate(
+            """(group) => [...document.querySelectorAll(group)].map((each) => each.getBoundingClientRect())
+               .filter(({ width }) => width > 0).map(({ left, right, top, bottom }) => [left, right, top, bottom])""",
+            group,
+        )
+        assert boxes, group
+        for number, (left, right, top, bottom) in enumerate(boxes):
+            assert left >= 0
+            assert right <= wide
+            for other in boxes[number + 1 :]:
+                beside = right <= other[0] + 1.0 or other[1] <= left + 1.0
+                assert beside or bottom <= other[2] + 1.0 or other[3] <= top + 1.0, group
+    page.tap("#play")
+    page.wait_for_selector("body[data-playing=true]")

@@ -8,11 +8,11 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
-from atmosbox.lab.lab_start import lab_starts
-from atmosbox.live import Session
-from atmosbox.live.lesson import lesson_of
+from atmosbox.lab.lab_start import lab_starts, served_start
+from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.instruments import MOMENTS
-from atmosbox.simulation.preparation import prepare
+from atmosbox.simulation.preparation import build, prepare
+from atmosbox.simulation.recording import Recording
 from atmosbox.simulation.runner import execute
 
 
@@ -69,13 +69,13 @@ def test_theory_that_changes_with_time_goes_on_as_theory_does():
 
 def met_in(scene, values):
     """Return which challenges of a scene are met in a minute at the usual pace, from a start with these settings."""
-    session = Session(prepare(scene, values))
-    session.obey({"type": "play"})
-    last = 60.0 * session.experiment.rate
-    while not session.finished and session.experiment.now < last:
-        session.run(5.0)
-    found, met = session.experiment.measured(0), set()
-    for challenge in session.lesson.challenges:
+    prepared = prepare(scene, values)
+    setup, rate = build(prepared), lab_plan(prepared)[0]["rate"]
+    recording = Recording(prepared, setup, {})
+    while recording.frames < setup.frames and setup.parcel.time < 60.0 * rate:
+        recording.advance(lambda passed: None)
+    found, met = recording.dataset("lab", settle=0, judged=False)[0], set()
+    for challenge in lesson_of(prepared.module).challenges:
         near = [np.abs(found[goal["name"]].values - goal["target"]) <= goal["within"] for goal in challenge["reach"]]
         met |= {challenge["ask"]} if np.all(near, axis=0).any() else set()
     return met
@@ -97,3 +97,44 @@ def test_each_challenge_is_met_from_a_start_that_the_page_offers_and_not_by_wait
 def test_discs_of_a_table_have_no_thermometer(scene, names):
     plan, _, _ = lab_plan(prepare(scene, {}))
     assert [each["name"] for each in plan["gauges"]] == names
+
+
+OWN = """
+from atmosbox.scene.engines import EXACT
+from atmosbox.scene.instruments import Air
+from atmosbox.scene.knob import Knob
+from atmosbox.scene.panels import Line, Panel
+from atmosbox.scene.settings import SceneSettings, setting
+from atmosbox.scene.setup import Setup
+from atmosbox.scene.units import Scale
+
+
+class Settings(SceneSettings):
+    speed: float = setting(1.0, "1", "speed at the start", low=0.1, high=5.0)
+
+
+def build(settings, engine=EXACT):
+    parcel = engine.make([[1, 1, 1], [3, 1, 1]], [[settings.speed, 0, 0], [0, 0, 0]], length=(4, 2, 2))
+    knob = Knob("temperature", "of one wall", "K", 1.0, 9.0, 5.0, print)
+    return Setup(parcel, Scale(1.0, 1.0, 1.0), 10.0, 10, (Air(),), knobs=(knob,))
+
+
+def theory(dataset, settings):
+    return {}
+
+
+def headlines(dataset, settings):
+    return ()
+
+
+panels = (Panel("line", "Warmth", (Line("elapsed_time", "air_temperature", "air"),)),)
+"""
+
+
+def test_a_scene_of_ones_own_has_its_settings_in_the_page_and_no_knob_that_is_a_function_in_python(tmp_path):
+    (tmp_path / "mine.py").write_text(OWN, encoding="utf-8")
+    mine = prepare(tmp_path / "mine.py", {"speed": 2.0})
+    start, module = served_start(mine, mine)
+    assert module == "contacts-rows"
+    assert start.plan["knobs"] == {}
+    assert [(each["name"], each["value"]) for each in start.plan["told"]["controls"]] == [("speed", 2.0), ("seed", 1)]

@@ -67,7 +67,7 @@ def test_the_modules_are_small_and_there_is_one_for_every_scene_that_has_a_lab()
 
 
 def test_a_set_of_modes_without_a_module_is_refused_in_a_sentence():
-    with pytest.raises(EngineError, match="atmosbox live elastic-collisions"):
+    with pytest.raises(EngineError, match="atmosbox run elastic-collisions --save-molecules, then atmosbox view"):
         module_bytes(module_name(Modes(*[True] * 13)), "elastic-collisions")
 
 

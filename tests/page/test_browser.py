@@ -1,13 +1,11 @@
 """The page in a real browser, opened from disk and without a network."""
 
 import io
-import json
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from atmosbox.page import live_page
 from atmosbox.page.document import _text, words
 from atmosbox.page.saved_run import pages
 from atmosbox.plot.curve import curve
@@ -284,86 +282,3 @@ def test_the_page_draws_the_same_numbers_as_the_figure_of_the_run(browser, run):
             compared += 1
     assert compared == 4
     assert np.isnan(found["x"]).tolist() == [True] * 3 + [False] * 17
-
-
-CONTROLS = [
-    {"name": "temperature", "label": "temperature of the walls", "unit": "degC", "kind": "number", "low": -100.0,
-     "high": 500.0, "step": 1.0, "value": 27.0, "restarts": False, "help": "of all six"},
-    {"name": "start", "label": "speeds at the start", "unit": "", "kind": "choice", "choices": ["maxwell", "equal"],
-     "value": "maxwell", "restarts": True, "help": ""},
-]  # fmt: skip
-
-
-@pytest.fixture
-def live(browser, run):
-    """Return the live page with frames of a made-up run, the sockets that it opened, and the messages that it sent."""
-    (shown,) = pages([run()])
-    context = browser.new_context(viewport={"width": 1280, "height": 720})
-    page = context.new_page()
-    page.set_default_timeout(15_000)
-    faults, sockets, heard = [], [], []
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.route("http://box.test/", lambda route: route.fulfill(body=live_page(), content_type="text/html"))
-
-    def connect(socket):
-        sockets.append(socket)
-        socket.on_message(lambda message: heard.append(json.loads(message)))
-        state = {"playing": True, "pace": 1.0, "recording": None, "frame": 0}
-        opening = {"type": "stage", "stage": shown.record["stage"], "controls": CONTROLS, "state": state}
-        socket.send(json.dumps(opening))
-        for frame in shown.frames[:5]:
-            socket.send(frame)
-        values = shown.record["values"]
-        series = {"air_temperature": values["air_temperature"][:5]}
-        socket.send(
-            json.dumps({"type": "series", "reset": False, "time": values["elapsed_time"][:5], "values": series})
-        )
-
-    page.route_web_socket("ws://box.test/socket", connect)
-    page.goto("http://box.test/")
-    page.wait_for_selector("body[data-ready]")
-    yield page, sockets, heard
-    context.close()
-    assert faults == []
-
-
-def test_a_live_box_is_shown_and_what_one_turns_goes_back(live):
-    page, _, heard = live
-    until(page, "Number(document.body.dataset.time) > 0.04")
-    page.fill("#controls input[type=number]", "60")
-    page.keyboard.press("Enter")
-    page.locator("#controls summary").click()
-    page.locator("#controls select").select_option("equal")
-    page.click("#play")
-    page.click("#on")
-    page.fill("#seed", "8")
-    page.click("#reset")
-    page.click("#faster")
-    page.fill("#file", "mine.nc")
-    page.click("#record")
-    until(page, "document.querySelectorAll('.graph').length === 3")
-    assert heard == [
-        {"type": "set", "name": "temperature", "value": 60},
-        {"type": "set", "name": "start", "value": "equal"},
-        {"type": "pause"},
-        {"type": "step"},
-        {"type": "reset", "seed": 8},
-        {"type": "pace", "value": 2},
-        {"type": "record", "file": "mine.nc"},
-    ]
-
-
-def test_a_refusal_is_said_in_words_and_a_lost_line_is_taken_up_again(live):
-    page, sockets, _ = live
-    page.fill("#controls input[type=number]", "999")
-    page.keyboard.press("Enter")
-    sockets[0].send(json.dumps({"type": "note", "level": "error", "text": "temperature = 999 is too high: give less."}))
-    page.wait_for_selector(".note.error")
-    assert "Refused: temperature = 999 is too high: give less." in page.inner_text("#notes")
-    assert page.input_value("#controls input[type=number]") == "27"
-    sockets[0].close()
-    page.wait_for_selector("body[data-line=lost]")
-    assert "connection to atmosbox is lost" in page.inner_text("#notes")
-    page.wait_for_selector("body[data-line=open]")
-    assert len(sockets) == 2
-    assert "lost" not in page.inner_text("#notes")

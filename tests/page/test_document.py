@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from atmosbox.errors import FileError, SettingError
-from atmosbox.page import lab_page, live_page, save, view_page
+from atmosbox.page import lab_page, save, view_page
 from atmosbox.page.document import MODULES
 from atmosbox.page.saved_run import pages
 
@@ -42,7 +42,7 @@ def test_every_script_stands_after_those_that_it_imports_and_none_is_forgotten()
     scripts = {file.name: file.read_text(encoding="utf-8") for file in PACKAGE.joinpath("web").iterdir()}
     scripts = {name: text for name, text in scripts.items() if name.endswith(".js") and name != "boot.js"}
     lab = lab_page("Air", [["20", 5, 9]], "AA==", "AA==")
-    for page, entry in ((view_page([], []), "view.js"), (live_page(), "live.js"), (lab, "lab.js")):
+    for page, entry in ((view_page([], []), "view.js"), (lab, "lab.js")):
         order = re.findall(r'data-module="([\w.]+)"', page)
         assert order[-1] == entry
         for place, name in enumerate(order):
@@ -51,7 +51,7 @@ def test_every_script_stands_after_those_that_it_imports_and_none_is_forgotten()
     assert set(MODULES) <= set(scripts)
 
 
-@pytest.mark.parametrize("page", [view_page([], []), live_page(), lab_page("Air", [["20", 5, 9]], "AA==", "AA==")])
+@pytest.mark.parametrize("page", [view_page([], []), lab_page("Air", [["20", 5, 9]], "AA==", "AA==")])
 def test_a_page_asks_for_nothing_outside_of_itself(page):
     assert re.findall(r'<(?:script|img|link|iframe)[^>]*(?:src|href)="(?!data:)', page) == []
     assert "default-src 'none'" in page

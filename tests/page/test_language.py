@@ -9,10 +9,10 @@ import pytest
 
 from atmosbox import scenarios
 from atmosbox.cli.option import Language
-from atmosbox.live.control import controls
-from atmosbox.live.lesson import lesson_of
-from atmosbox.page import live_page, view_page
+from atmosbox.page import view_page
+from atmosbox.page.control import knob_controls, setting_controls
 from atmosbox.page.document import LANGUAGES, words
+from atmosbox.page.lesson import lesson_of
 from atmosbox.simulation.preparation import build, prepare
 
 WEB = resources.files("atmosbox.page").joinpath("web")
@@ -42,11 +42,11 @@ def said_by_scenes():
             found |= {panel.title, panel.x_label, panel.y_label} | {line.label for line in panel.lines}
         small = {"molecules": 200} if hasattr(settings, "molecules") else {}
         box = build(prepare(name, small))
-        values = {knob.name: knob.value for knob in box.knobs} | settings.as_dict()
         lesson = lesson_of(module)
         found |= {preset.title for preset in lesson.presets}
         found |= {text for each in lesson.challenges for text in (each["ask"], each["hint"])}
-        found |= {c.parameter.help for c in controls(box.knobs, settings.describe(), values, collisions=True)}
+        made = knob_controls(box.knobs) + setting_controls(settings.describe(), settings.as_dict(), ["seed"])
+        found |= {control["label"] for control in made}
     return {text.replace("\u00a0", " ") for text in found if text}
 
 
@@ -85,7 +85,7 @@ def test_all_that_scenes_say_on_a_page_is_translated(language):
 
 
 def test_a_page_carries_the_tables_that_it_may_need():
-    assert "Erst kühlt das Becken" in live_page()
+    assert "Erst kühlt das Becken" in view_page([], [])
     assert "Se enfría el agua" not in view_page([], [], language="de")
     assert '<html lang="de"' in view_page([], [], language="de")
 

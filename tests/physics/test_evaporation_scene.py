@@ -12,6 +12,9 @@ import pytest
 from atmosbox import theory
 from atmosbox.errors import SettingError
 from atmosbox.simulation import runner
+from atmosbox.simulation.preparation import build, prepare
+from atmosbox.simulation.recording import Recording
+from atmosbox.simulation.verification import LEDGER_LIMIT
 from atmosbox.theory import LEAVING_FREEDOM, isobaric_water
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -183,3 +186,46 @@ def test_the_wet_bulb_is_a_fact_unless_the_air_is_supersaturated():
     assert bulb < float(facts(pool=40)["at the end, by the balance of enthalpy"].split()[0]) < 30.0
     assert facts(humidity=120.0)["wet-bulb temperature"].startswith("none")
     assert float(facts(humidity=100.0)["wet-bulb temperature"].split()[0]) == pytest.approx(30.0, abs=0.01)
+
+
+def test_the_walls_cool_the_air_over_a_pool_and_a_cover_slows_both_rates_alike():
+    prepared = prepare("evaporation", {"molecules": 3000, "pool": 600, "duration": "20 ns"}, engine="exact")
+    setup = build(prepared)
+    parcel, recording = setup.parcel, Recording(prepared, setup, {})
+    walls, cover = setup.knobs
+
+    def after(frames):
+        for _ in range(frames):
+            recording.advance(lambda passed: None)
+        return recording.dataset("knobs", settle=0, judged=False)[0]
+
+    def agrees(values, expected, frames):
+        """Return whether the mean of the last frames is within 4 errors of 20 blocks: a false alarm once in 1 300."""
+        blocks = values[-frames:].values.reshape(20, -1).mean(axis=1)
+        return abs(blocks.mean() - expected) < 4.0 * blocks.std(ddof=1) / 20**0.5
+
+    after(20)
+    began = parcel.number + parcel.liquid
+    assert np.isnan(parcel.wall_kT()).all(), "walls that nobody turned let no heat pass"
+    walls.set(10.0)
+    found, saturated = after(500), float(theory.saturation_vapor_pressure(283.15))
+    assert agrees(found.gas_temperature, 283.15, 400)
+    assert agrees(found.liquid_temperature, 283.15, 400)
+    assert agrees(found.water_vapor_partial_pressure, saturated, 400)
+    assert found.water_vapor_partial_pressure_theory[-1] == pytest.approx(saturated)
+    rate = float(found.condensation_rate_theory[-1])
+    assert agrees(found.evaporation_rate, rate, 400)
+
+    cover.set(25.0)
+    found = after(300)
+    assert found.condensation_rate_theory[-1] == pytest.approx(0.25 * rate)
+    assert agrees(found.evaporation_rate, 0.25 * rate, 280)
+
+    cover.set(0.0)
+    shut = parcel.evaporated, parcel.condensed
+    walls.set(30.0)
+    found = after(300)
+    assert (parcel.evaporated, parcel.condensed) == shut
+    assert agrees(found.liquid_temperature, 303.15, 200), "heat passes the cover"
+    assert parcel.number + parcel.liquid == began
+    assert parcel.ledger() < LEDGER_LIMIT

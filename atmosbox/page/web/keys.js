@@ -4,13 +4,13 @@ import { word } from "./words.js";
 
 export const KEYS = [
   [word("space"), word("key_play")],
-  ...(document.body.classList.contains("live") ? [["→", word("on")]] : [["→  ←", word("key_step")]]),
+  ...(document.body.classList.contains("lab") ? [["→", word("on")]] : [["→  ←", word("key_step")]]),
   ["↑  ↓", word("key_pace")],
   ["1 2 3 4", word("key_camera")],
   ["C", word("key_colour")],
   ["T", word("key_trace")],
   ["D", word("key_theme")],
-  ...(document.body.classList.contains("live")
+  ...(document.body.classList.contains("lab")
     ? [["M", word("key_say")], ["U", word("key_undo")], ["R", word("key_again")]] : [["Home  End", word("key_ends")]]),
   ["?", word("key_help")],
 ];

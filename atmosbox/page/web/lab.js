@@ -1,38 +1,177 @@
-// The page of a box that runs in the page itself: a worker takes the place of the socket of a live page.
+// The page of a box that runs: frames and numbers come from the engine, and changes of knobs and settings go to it.
 
-import { begin as beginLive } from "./live.js";
+import { showCaption } from "./caption.js";
+import { Controls } from "./controls.js";
+import { Numbers } from "./curves.js";
+import { withUnit } from "./figure.js";
+import { Engine } from "./engine.js";
+import { Film, decode } from "./frames.js";
+import { Gauges } from "./gauges.js";
+import { Graphs } from "./graphs.js";
+import { listen } from "./keys.js";
+import { showLegend } from "./legend.js";
+import { Lesson } from "./lesson.js";
+import { note } from "./notes.js";
+import { Player } from "./player.js";
+import { Sheet } from "./sheet.js";
+import { Stage } from "./stage.js";
+import { phrase, spell } from "./words.js";
 
-const read = (name) => document.getElementById(name).textContent;
+const KEPT = 240; // frames, from which the path of a molecule is drawn
+const LOOK = 200; // ms between two updates of the graphs
 
-const save = (name, text) => {
-  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  Object.assign(document.createElement("a"), { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 60_000);
-};
+const find = (name) => document.getElementById(name);
 
-export class Bench {
-  // Calls `hear(message)` for messages, `see(buffer)` for frames, `state("open" | "lost")` for the connection.
-  constructor({ hear, see, state }) {
-    const address = URL.createObjectURL(new Blob([read("worker")], { type: "text/javascript" }));
-    this.worker = new Worker(address);
-    this.worker.onmessage = ({ data }) => {
-      if (data instanceof ArrayBuffer) see(data);
-      else if (data.type === "file") save(data.name, data.text);
-      else if (data.type === "digest") document.body.dataset.digest = data.sha256;
-      else hear(data);
-    };
-    this.worker.onerror = ({ message }) => hear({ type: "note", level: "error", text: message });
-    this.worker.postMessage({ type: "begin", starts: JSON.parse(read("starts")), module: read("module"), stored: read("stored") });
-    document.addEventListener("visibilitychange", () => this.say({ type: "watched", is: !document.hidden }));
-    state("open");
+class Lab {
+  constructor() {
+    this.engine = new Engine({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer) });
+    const say = (told) => this.engine.say(told);
+    this.player = new Player(find("transport"), say);
+    this.lesson = new Lesson(find("lesson"), say);
+    this.gauges = new Gauges(find("gauges"), find("voice"));
+    this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }),
+      (text) => note(find("notes"), { text }));
+    this.beat = { arrived: 0, interval: 50 };
+    this.stale = false;
   }
 
-  say(message) {
-    this.worker.postMessage(message);
+  hear(told) {
+    if (told.type === "stage") this.open(told);
+    else if (told.type === "series") this.append(told);
+    else if (told.type === "arrays") this.numbers?.replace(told.values);
+    else if (told.type === "state") this.state(told);
+    else if (told.type === "controls") this.knobs(told.controls);
+    else if (told.type === "note") {
+      note(find("notes"), told);
+      if (told.level === "error") this.controls.restore();
+    }
+    this.stale = true;
+  }
+
+  // A new box begins: remove all that was shown of the previous one.
+  open({ stage: record, controls, state, lesson }) {
+    this.stage?.leave();
+    find("boxes").replaceChildren();
+    const frame = Object.assign(document.createElement("div"), { className: "box" });
+    find("boxes").append(frame);
+    find("title").textContent = document.title = phrase(record.title);
+    const place = this.stage?.camera.place;
+    this.film = new Film([], KEPT);
+    this.numbers = new Numbers();
+    this.stage = new Stage(frame, record, this.film);
+    if (place !== undefined && place !== null) this.stage.camera.place = place;
+    this.graphs = new Graphs(find("graphs"), [{ stage: record, film: this.film, numbers: this.numbers }], null);
+    this.sheet = new Sheet([this.stage], () => this.graphs.repaint());
+    this.walls = state.walls ?? null;
+    this.lesson.offer(lesson);
+    document.body.dataset.pictured = record.panels.some(({ kind }) => kind === "atmosphere");
+    const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
+      record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
+    this.caption = showCaption(find("caption"), [{ stage: record, footer }]);
+    this.player.begin(record);
+    this.state({ seed: record.seed, ...state });
+    this.knobs(controls ?? []);
+    document.body.dataset.ready = true;
+    this.start(state);
+  }
+
+  // Start a box that has not run yet, unless the reader's system asks for reduced motion.
+  start({ playing, time }) {
+    if (this.started) return;
+    this.started = true;
+    if (!playing && time === 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.engine.say({ type: "play" });
+  }
+
+  // Show the state of the box, which comes at least twice a second.
+  state(told) {
+    this.player.show(told);
+    this.lesson.show(told);
+    if (told.gauges) this.gauges.show(told.gauges);
+    if (told.walls) {
+      this.walls = told.walls;
+      this.stage?.warm(told.walls);
+    }
+  }
+
+  // Show the values of the knobs, also in the text under the box.
+  knobs(controls) {
+    this.controls.show(controls);
+    this.caption?.follow({ settings: controls.filter(({ kind }) => kind === "number") });
+  }
+
+  append({ reset, time, values }) {
+    if (reset) this.numbers.clear();
+    this.numbers.append(time ?? [], values ?? {});
+  }
+
+  see(buffer) {
+    if (!this.film) return;
+    const { frame } = decode(buffer);
+    const last = this.film.frames.at(-1);
+    if (last && frame.time < last.time) this.film.clear();
+    this.film.push(frame);
+    if (frame.fastest !== this.stage.record.speed.high) this.rescale(frame.fastest);
+    const now = performance.now();
+    this.beat = { arrived: now, interval: Math.min(0.8 * this.beat.interval + 0.2 * (now - this.beat.arrived), 400) };
+    this.stale = true;
+    document.body.dataset.time = frame.time;
+    if (last === undefined || !this.player.state.playing) this.player.show({ time: frame.time });
+  }
+
+  // The scale of speeds changes with this frame, because the box has become much warmer or colder.
+  rescale(fastest) {
+    this.stage.record.speed.high = fastest;
+    showLegend(find("legend"), this.stage.record, this.stage.mode);
+  }
+
+  // Molecules move evenly from one received frame to the next; so the picture is one frame behind.
+  draw(now) {
+    const { frames } = this.film ?? { frames: [] };
+    if (!frames.length) return;
+    const second = frames.at(-1), first = frames.at(-2) ?? second;
+    const share = Math.min((now - this.beat.arrived) / Math.max(this.beat.interval, 1), 1);
+    const time = first.time + (second.time - first.time) * share;
+    if (time !== this.drawn || this.stage.dirty) this.stage.show(time);
+    this.drawn = time;
+    this.stage.render();
+  }
+
+  // Update the graphs, which is done less often than the picture.
+  look() {
+    if (!this.stale || !this.graphs) return;
+    this.stale = false;
+    this.graphs.refresh();
+    if (this.film.frames.length) {
+      this.graphs.at(this.film.end);
+      find("status").textContent = this.sheet.story();
+      this.caption.follow({ walls: this.walls, length: this.film.frames.at(-1).length });
+    }
+    this.lesson.judge(this.numbers);
   }
 }
 
 export function begin() {
-  const bench = beginLive(Bench, { saves: true });
-  document.addEventListener("ask", ({ detail }) => bench.say(detail)); // used by tests
+  spell();
+  const lab = new Lab();
+  const { player } = lab;
+  listen({
+    " ": () => player.toggle(),
+    ArrowRight: () => player.step(),
+    ArrowUp: () => player.accelerate(2),
+    ArrowDown: () => player.accelerate(0.5),
+    ...Object.fromEntries([0, 1, 2, 3].map((place) => [String(place + 1), () => lab.sheet?.look(place)])),
+    c: () => lab.sheet?.colour(),
+    t: () => lab.sheet?.trace(),
+    d: () => lab.sheet?.turnTheme(),
+    r: () => player.reset(),
+    u: () => lab.lesson.undo(),
+    m: () => lab.gauges.say(withUnit(lab.film?.end, player.unit, 4)),
+    "?": () => lab.sheet?.help(),
+  });
+  setInterval(() => lab.look(), LOOK);
+  const beat = (now) => {
+    lab.draw(now);
+    requestAnimationFrame(beat);
+  };
+  requestAnimationFrame(beat);
 }

@@ -57,7 +57,7 @@ function merged(own, first) {
 }
 
 // The starts of a page, by their settings or by title: the plan and the contents of the memory of each. A plan holds
-// only its differences from the first plan.
+// only its differences from the first plan. A page that Python serves has one start, and gets others from there.
 class Starts {
   static async of({ starts, module, stored }) {
     const all = await inflated(bytesOf(stored)), found = new Map();

@@ -1,4 +1,4 @@
-// The box in a worker, which sends the same messages as `atmosbox live`. It follows lab_machine.js in the same script.
+// The box in a worker, and its messages to the page. It follows lab_machine.js in the same script.
 //
 // This file contains no physics. A plan, which Python has written, tells what each kernel returns and where its numbers
 // are, and holds the factors from the units of the engine to SI and the tables of the curves of theory.
@@ -19,8 +19,9 @@ const say = (message) => postMessage(message);
 const refuse = (text) => say({ type: "note", level: "error", text });
 
 class Box {
-  constructor(starts, machine) {
-    Object.assign(this, { starts, playing: false, pace: 1, watched: true, turned: [], seed: machine.plan.seed });
+  // `served` says whether Python serves the page, and makes plans of other boxes.
+  constructor(starts, machine, served) {
+    Object.assign(this, { starts, served, start: starts.first, past: [], playing: false, pace: 1, watched: true, turned: [], seed: machine.plan.seed });
     this.take(machine);
     this.begin();
     this.greet();
@@ -36,7 +37,7 @@ class Box {
 
   take(machine) {
     Object.assign(this, { machine, plan: machine.plan, told: machine.plan.told });
-    if (!this.plan.seeded) this.seed = this.plan.seed;
+    if (!this.plan.seeded || this.served) this.seed = this.plan.seed;
   }
 
   begin() {
@@ -49,7 +50,8 @@ class Box {
     if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
     machine.call("begin");
     machine.call("begin_averages_anew");
-    Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],
+    Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], pictures: [],
+      past: this.past.filter(({ start }) => start !== undefined),
       fastest: this.plan.fastest, trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
     this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
   }
@@ -69,7 +71,7 @@ class Box {
   state() {
     const reading = this.machine.array("gauges.reading"), { pictures } = this;
     const rate = pictures.length > 2 ? (pictures.length - 1) / (pictures.at(-1) - pictures[0]) * 1000 : 0;
-    return { type: "state", playing: this.playing, pace: this.pace, recording: null, time: this.now * this.plan.time,
+    return { type: "state", playing: this.playing, pace: this.pace, time: this.now * this.plan.time,
       frame: this.frame, seed: this.seed, seeded: this.plan.seeded, finished: this.finished, ledger: reading[this.plan.ledger],
       molecules: this.plan.present === null ? this.plan.molecules : reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
       undo: this.past.length > 0 };
@@ -227,7 +229,7 @@ class Box {
 
   async obey(message) {
     const { type, value, name } = message;
-    if (type === "set" && name in this.plan.start) await this.choose(name, String(value));
+    if (type === "set" && this.told.controls.some((each) => each.name === name && each.restarts)) await this.choose(name, value);
     else if (type === "preset") await this.try(message.number);
     else if (type === "play") {
       if (this.failed) this.again();
@@ -242,7 +244,7 @@ class Box {
     } else if (type === "reset") this.reseed(message.seed ?? this.seed);
     else if (type === "pace") this.pace = Math.min(Math.max(Number(value) || 1, SLOWEST), FASTEST);
     else if (type === "set") this.turn(name, value);
-    else if (type === "undo") this.undo();
+    else if (type === "undo") await this.undo();
     else if (type === "save") this.save();
     else if (type === "watched") this.watched = message.is;
     else if (type === "frames") {
@@ -253,21 +255,59 @@ class Box {
     say(this.state());
   }
 
-  // Begin anew with another setting that needs another box, such as the number of molecules. If the page does not hold
-  // the combination of this value with the present others, the others become those with which the page was written, and
+  // Begin the box of a start: in a file the start's key, on a page that Python serves all settings. Return whether it begins.
+  async change(start) {
+    const machine = this.served ? await this.planned(start) : await this.starts.machine(start);
+    if (!machine) return false;
+    const before = this.served ? this.settings() : this.start;
+    this.take(machine);
+    this.start = start;
+    this.again();
+    this.past.push({ start: before });
+    return true;
+  }
+
+  // The machine of a box with other settings, which Python plans; null if it refuses them.
+  async planned(settings) {
+    say({ type: "state", busy: "The box is being built." });
+    const told = await new Promise((answer) => {
+      this.answer = answer;
+      say({ type: "plan", settings });
+    });
+    if (told.refused) {
+      refuse(told.refused);
+      return null;
+    }
+    this.starts = await Starts.of(told);
+    return this.starts.machine(this.starts.first);
+  }
+
+  // The settings of a box that begins with the present seed, and with knobs as they are now.
+  settings() {
+    const found = { ...this.plan.settings, seed: this.seed };
+    for (const { name, value } of this.told.controls) {
+      if (name in found && this.knobs[name] !== value) found[name] = this.knobs[name];
+    }
+    return found;
+  }
+
+  // Begin again with another setting that needs another box, such as the number of molecules. A file may not hold the
+  // combination of this value with the present others: then the others become those with which the page was written, and
   // the reader is told so.
   async choose(name, value) {
-    const { choices = [] } = this.told.controls.find((each) => each.name === name) ?? {};
-    if (!choices.includes(value)) {
+    if (this.served) {
+      await this.change({ ...this.settings(), [name]: value });
+      return;
+    }
+    const { choices = [] } = this.told.controls.find((each) => each.name === name);
+    if (!choices.includes(String(value))) {
       refuse(`${name} = ${value} is none of ${choices.join(", ")}: give one of these.`);
       return;
     }
     const key = (values) => Object.entries({ ...values, [name]: value }).map((pair) => pair.join("=")).join(", ");
     const [here, written] = [key(this.plan.start), key(this.starts.values)];
-    const kept = this.starts.has(here) && !this.preset;
-    this.preset = null;
-    this.take(await this.starts.machine(this.starts.has(here) ? here : written));
-    this.again();
+    const kept = this.starts.has(here) && !this.told.lesson.presets.includes(this.start);
+    await this.change(this.starts.has(here) ? here : written);
     if (!kept) say({ type: "note", level: "info", text: "This page has no box with these settings together: all others are as the page was written." });
   }
 
@@ -275,12 +315,11 @@ class Box {
   async try(number) {
     const titles = this.told.lesson.presets;
     if (!(number in titles)) return;
-    this.preset = number === 0 ? null : titles[number];
-    this.take(await this.starts.machine(this.preset ?? this.starts.first));
-    this.again();
+    if (this.served) await this.change(this.plan.presets[number]);
+    else await this.change(number === 0 ? this.starts.first : titles[number]);
   }
 
-  // Begin anew, with the same seed or with another one.
+  // Begin again, with the same seed or with another one.
   reseed(seed) {
     if (this.plan.seeded && !(Number.isSafeInteger(seed) && seed >= 0)) {
       refuse(`seed = ${seed} is no whole number from 0 to ${Number.MAX_SAFE_INTEGER}: give one of these.`);
@@ -324,14 +363,19 @@ class Box {
     this.led ||= knob.kernel === "lead";
     this.knobs[name] = value;
     if (this.finished) Object.assign(this, { playing: true, finished: false }); // it had stopped only at the end of its ascent
-    this.turned.push(`# at time ${this.now * this.plan.time}: ${name} = ${value} ${unit}`);
+    this.turned.push(`# in frame ${this.frame + 1}, at ${this.now * this.plan.time} ${this.told.stage.time.unit}: ${name} = ${value} ${unit}`);
     if (this.turned.length > 5000) this.turned.shift();
     say({ type: "controls", controls: this.controls() });
   }
 
-  undo() {
-    const last = this.past.pop();
+  async undo() {
+    const last = this.past.at(-1);
     if (!last) return;
+    if (last.start !== undefined) {
+      if (await this.change(last.start)) this.past.splice(-2);
+      return;
+    }
+    this.past.pop();
     const isFirst = !this.past.some(({ name }) => name === last.name);
     this.act(this.told.controls.find(({ name }) => name === last.name), last.value, isFirst);
   }
@@ -365,7 +409,7 @@ async function hear(data) {
   try {
     if (data.type === "begin") {
       const starts = await Starts.of(data);
-      box = new Box(starts, await starts.machine(starts.first));
+      box = new Box(starts, await starts.machine(starts.first), data.served);
     } else await box?.obey(data);
   } catch (error) {
     refuse(`The engine of this page has stopped: ${error.message}`);
@@ -375,4 +419,7 @@ async function hear(data) {
 
 // Messages are handled one after the other, so that a new box is complete before the next request.
 let heard = Promise.resolve();
-onmessage = ({ data }) => { heard = heard.then(() => hear(data)); };
+onmessage = ({ data }) => {
+  if (data.type === "planned") box.answer(data); // for the request that waits for it
+  else heard = heard.then(() => hear(data));
+};

@@ -1,9 +1,7 @@
-// Offers for a class: named settings, a pump, undo, and challenges.
+// Offers for a class: named settings, undo, and challenges.
 
 import { figure, spelled } from "./figure.js";
 import { numbers, phrase, word } from "./words.js";
-
-const STROKE = 1.5; // factor on the number of molecules by one stroke of the pump, or its inverse
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
 
@@ -13,16 +11,15 @@ export class Lesson {
     Object.assign(this, { parent, say, challenge: null });
   }
 
-  // Show the presets, the pump and the challenges of the scene.
-  offer({ presets = [], pump = false, challenges = [] } = {}) {
-    const told = JSON.stringify([presets, pump, challenges]);
+  // Show the presets and the challenges of the scene.
+  offer({ presets = [], challenges = [] } = {}) {
+    const told = JSON.stringify([presets, challenges]);
     if (told === this.told) return;
     this.told = told;
     this.challenge = null;
     this.parent.replaceChildren();
     const bar = make("div", { className: "tries" });
     if (presets.length) bar.append(this.#presets(presets));
-    if (pump) bar.append(this.#pump());
     challenges.forEach((challenge, index) => bar.append(this.#opener(challenge, index, challenges.length)));
     this.back = make("button", { type: "button", id: "undo", textContent: `↶ ${word("undo")}`, title: word("undo_title") });
     this.back.onclick = () => this.undo();
@@ -47,19 +44,6 @@ export class Lesson {
       list.blur(); // so that keys control the player again
     };
     return list;
-  }
-
-  #pump() {
-    const group = make("span", { className: "group" });
-    group.setAttribute("role", "group");
-    group.setAttribute("aria-label", word("pump"));
-    for (const [sign, name, factor] of [["−", "pump_out", 1 / STROKE], ["+", "pump_in", STROKE]]) {
-      const button = make("button", { type: "button", id: name, title: word(name), textContent: sign === "+" ? `${word("pump")} +` : "−" });
-      button.setAttribute("aria-label", word(name));
-      button.onclick = () => this.say({ type: "pump", factor });
-      group.append(button);
-    }
-    return group;
   }
 
   #opener(challenge, index, count) {

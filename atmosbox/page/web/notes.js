@@ -6,19 +6,15 @@ const SIGNS = { info: "i", warning: "!", error: "×" };
 const WORDS = { warning: "note", error: "refused" };
 const READING = 7000; // time after which a message disappears [ms]
 
-export function note(parent, { level = "info", text, name }) {
-  if (name) parent.querySelector(`[data-name="${name}"]`)?.remove();
+export function note(parent, { level = "info", text }) {
   const card = document.createElement("div");
   card.className = `note ${level}`;
-  if (name) card.dataset.name = name;
   const sign = Object.assign(document.createElement("b"), { textContent: SIGNS[level] ?? "i" });
-  const words = Object.assign(document.createElement("span"), { textContent: (name || !WORDS[level] ? "" : word(WORDS[level])) + phrase(text) });
+  const words = Object.assign(document.createElement("span"), { textContent: (WORDS[level] ? word(WORDS[level]) : "") + phrase(text) });
   const close = Object.assign(document.createElement("button"), { type: "button", textContent: word("close") });
   close.onclick = () => card.remove();
   card.append(sign, words, close);
   parent.append(card);
-  if (level !== "error" && !name) setTimeout(() => card.remove(), READING);
+  if (level !== "error") setTimeout(() => card.remove(), READING);
   while (parent.children.length > 4) parent.firstElementChild.remove();
 }
-
-export const forget = (parent, name) => parent.querySelector(`[data-name="${name}"]`)?.remove();

@@ -95,7 +95,7 @@ export class Sheet {
   }
 
   help() {
-    const dialog = find("sheet"), seeks = !document.body.classList.contains("live");
+    const dialog = find("sheet"), seeks = !document.body.classList.contains("lab");
     dialog.innerHTML = `<h2>${word("keys")}</h2><dl></dl><p>${word("mouse")}${seeks ? ` ${word("mouse_time")}` : ""}</p><p>${word("libraries")}</p>`
       + `<form method='dialog'><button>${word("close")}</button></form>`;
     for (const [key, meaning] of KEYS.filter(([key]) => key !== "C" || this.modes.length > 1)) {

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { look, parse, speedColour, theme } from "./colour.js";
 import { Camera } from "./camera.js";
-import { Furniture } from "./furniture.js";
+import { Walls } from "./walls.js";
 import { Labels } from "./labels.js";
 import { Molecules } from "./molecules.js";
 import { Trace } from "./trace.js";
@@ -31,9 +31,9 @@ export class Stage {
     sun.position.set(-2, -3, 5);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8896a8, 1.7), sun);
     this.molecules = new Molecules(record.molecules_shown);
-    this.furniture = new Furniture(record.box);
+    this.walls = new Walls(record.box);
     this.trace = new Trace();
-    this.scene.add(this.furniture.object, this.molecules.object, this.trace.object);
+    this.scene.add(this.walls.object, this.molecules.object, this.trace.object);
     this.labels = new Labels(parent, record.box);
     this.camera = new Camera(this.canvas, record.box, () => { this.dirty = true; });
     this.sizes = Float32Array.from(record.kind, (kind, index) => record.size?.[index] ?? record.species[kind].drawn);
@@ -74,7 +74,7 @@ export class Stage {
     const background = parse(look().background);
     this.scene.background = new THREE.Color().setRGB(...background, THREE.SRGBColorSpace);
     this.molecules.light(background, theme() === "dark");
-    this.furniture.paint();
+    this.walls.paint();
     this.tint();
   }
 
@@ -99,10 +99,10 @@ export class Stage {
     const { first, second, share } = moment;
     this.length = first.length.map((side, axis) => side + (second.length[axis] - side) * share);
     if (this.length[2] > this.record.box.reach * 1.0001) {
-      this.record.box.reach = this.furniture.height = this.length[2] * 1.25;
+      this.record.box.reach = this.walls.height = this.length[2] * 1.25;
       if (this.camera.place !== null) this.camera.go(this.camera.place);
     }
-    this.furniture.arrange(this.length, first.drops, second.drops, share);
+    this.walls.arrange(this.length, first.drops, second.drops, share);
     if (turned) this.tint();
     this.#follow();
     this.dirty = true;
@@ -110,7 +110,7 @@ export class Stage {
 
   // Tint the walls by their temperatures; null for a wall whose temperature is not known.
   warm(temperatures) {
-    this.furniture.warm(temperatures);
+    this.walls.warm(temperatures);
     this.dirty = true;
   }
 
@@ -182,7 +182,7 @@ export class Stage {
   render() {
     if (!this.dirty || !this.length || !this.sized) return;
     this.dirty = false;
-    this.furniture.seenFrom(this.camera.eye.position, this.length[2]);
+    this.walls.seenFrom(this.camera.eye.position, this.length[2]);
     this.molecules.material.uniforms.depths.value.set(...this.camera.depths());
     this.renderer.render(this.scene, this.camera.eye);
     this.labels.write(this.length, this.camera.eye, this.parent.clientWidth, this.parent.clientHeight);

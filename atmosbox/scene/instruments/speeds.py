@@ -34,16 +34,6 @@ class Speeds:
         self._mean: list[float] = []
         self._frames: list[Array] = []
 
-    def wider(self, factor: float) -> Speeds:
-        """Return an empty instrument with the same number of bins and all bounds multiplied by ``factor``.
-
-        Examples
-        --------
-        >>> Speeds(np.array([0.0, 1.0, 2.0])).wider(2.0)._edges.tolist()
-        [0.0, 2.0, 4.0]
-        """
-        return Speeds(self._edges * factor)
-
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules by speed."""
         self._counts += speed_counts(snapshot, self._edges)

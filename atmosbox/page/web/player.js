@@ -1,4 +1,4 @@
-// The bar of a running box: play, step, begin anew with a seed, pace, and recording.
+// The bar of a box that runs: play, step, pace, begin again with a seed, and save the measurements.
 
 import { figure, withUnit } from "./figure.js";
 import { icon } from "./transport.js";
@@ -6,10 +6,10 @@ import { phrase, word } from "./words.js";
 
 const SLOWEST = 0.25, FASTEST = 16;
 
-export class Pulse {
-  // `saves` is true where nothing can be recorded, but the measurements can be saved.
-  constructor(parent, say, { saves = false } = {}) {
-    Object.assign(this, { say, saves, state: { playing: false, pace: 1, recording: null }, unit: "", particle: "molecule" });
+export class Player {
+  // `say(message)` sends a message to the engine.
+  constructor(parent, say) {
+    Object.assign(this, { say, state: { playing: false, pace: 1 }, unit: "", particle: "molecule" });
     parent.innerHTML = `
       <button type="button" id="play" class="main" title="${word("play_title")}"></button>
       <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
@@ -18,18 +18,14 @@ export class Pulse {
       <output id="time" aria-live="off"></output><output id="vitals" aria-live="off"></output>
       <span class="group"><button type="button" id="reset" title="${word("again_title")}">${word("again")}</button></span>
       <label class="seed" title="${word("seed_title")}">${word("seed")} <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
-      <span class="group"><input type="text" id="file" aria-label="${word("file")}" spellcheck="false"><button type="button" id="record"></button></span>`;
+      <button type="button" id="save" title="${word("save_title")}">${word("save")}</button>`;
     this.part = (name) => parent.querySelector(`#${name}`);
-    if (saves) {
-      this.part("file").hidden = true;
-      this.part("record").title = word("save_title");
-    }
     this.part("play").onclick = () => this.toggle();
     this.part("on").onclick = () => this.step();
     this.part("slower").onclick = () => this.accelerate(0.5);
     this.part("faster").onclick = () => this.accelerate(2);
     this.part("reset").onclick = () => this.reset();
-    this.part("record").onclick = () => this.record();
+    this.part("save").onclick = () => this.say({ type: "save" });
     this.show({});
   }
 
@@ -50,31 +46,19 @@ export class Pulse {
     this.say({ type: "pace", value: Math.min(Math.max(this.state.pace * factor, SLOWEST), FASTEST) });
   }
 
-  record() {
-    if (this.saves) this.say({ type: "save" });
-    else if (this.state.recording) this.say({ type: "stop_record" });
-    else this.say({ type: "record", file: this.part("file").value.trim() || null });
-  }
-
-  // A new box begins: set its unit of time, its word for a molecule, and the default file of its recordings.
-  begin({ time, scene, particle }) {
-    this.unit = time.unit;
-    this.particle = particle;
-    this.part("file").placeholder = `${scene.replace(/.*\//, "").replace(/\.py$/, "")}-live.nc`;
+  // A new box begins: set its unit of time, and its word for a molecule.
+  begin({ time, particle }) {
+    Object.assign(this, { unit: time.unit, particle });
   }
 
   // Show the state of the box.
   show(told) {
     Object.assign(this.state, told);
-    const { playing, pace, recording, time, rate, ledger, molecules, seed, seeded, finished, busy } = this.state;
-    this.part("seed").parentElement.hidden = this.saves && !seeded;
+    const { playing, pace, time, rate, ledger, molecules, seed, seeded, finished, busy } = this.state;
+    this.part("seed").parentElement.hidden = !seeded;
     this.part("play").innerHTML = icon(playing ? "pause" : "play");
     this.part("play").setAttribute("aria-label", word(playing ? "pause" : "play"));
     this.part("pace").textContent = pace < 1 ? `1/${Math.round(1 / pace)}×` : `${pace}×`;
-    this.part("record").textContent = this.saves ? word("save") : recording ? `■ ${word("stop_record")}` : `● ${word("record")}`;
-    this.part("record").setAttribute("aria-pressed", Boolean(recording));
-    this.part("file").disabled = Boolean(recording);
-    if (recording) this.part("file").value = recording;
     if (time !== undefined) this.part("time").textContent = withUnit(time, this.unit, 4);
     const vitals = busy ? [phrase(busy)] : [
       molecules !== undefined && word(this.particle === "disc" ? "discs" : "molecules", { number: molecules }),

@@ -1,4 +1,4 @@
-"""What a scene offers a class besides its knobs: named settings to try, a pump, and challenges.
+"""What a scene offers a class besides its knobs: named settings to try, and challenges.
 
 They are read from a file beside the scene, ``my_scene.live.toml``, which contains data only and no code. ::
 
@@ -6,16 +6,13 @@ They are read from a file beside the scene, ``my_scene.live.toml``, which contai
     title = "Polar night"
     set = {temperature = "-40 degC"}
 
-    [pump]
-    with = ["molecules", "pressure"]
-
     [[challenge]]
     ask = "Reach 300 hPa at -48 degC. Which start does that need?"
     hint = "A dry parcel cools as T ~ p^(2/7)."
     reach = {parcel_pressure = ["300 hPa", "4 hPa"], parcel_temperature = ["-48 degC", "1.5 K"]}
 
-A preset restarts the box with its settings, and the scene's defaults for the rest. The settings that a pump names grow
-together. A challenge is met when each variable is within the given distance of its value.
+A preset begins the box again with its settings, and those of the page for the rest. A challenge is met when each
+variable is within the given distance of its value.
 """
 
 from __future__ import annotations
@@ -62,29 +59,12 @@ class Lesson:
     ----------
     presets
         Settings to try.
-    pump
-        Settings that grow together when molecules are pumped in; empty if the scene has no pump.
     challenges
         As data for the page: the question, a hint, and the values to reach with their tolerances.
     """
 
     presets: tuple[Preset, ...] = ()
-    pump: tuple[str, ...] = ()
     challenges: tuple[dict[str, Any], ...] = ()
-
-    def record(self) -> dict[str, Any]:
-        """Return the lesson as data for the page.
-
-        Examples
-        --------
-        >>> Lesson((Preset("Polar night", {}),)).record()["presets"]
-        ['Polar night']
-        """
-        return {
-            "presets": [preset.title for preset in self.presets],
-            "pump": bool(self.pump),
-            "challenges": list(self.challenges),
-        }
 
 
 def lesson_of(module: ModuleType) -> Lesson:
@@ -105,8 +85,8 @@ def lesson_of(module: ModuleType) -> Lesson:
     Examples
     --------
     >>> from atmosbox import scenarios
-    >>> lesson_of(scenarios.load("temperature")).pump
-    ('molecules', 'pressure')
+    >>> len(lesson_of(scenarios.load("lifting-dry")).challenges)
+    2
     """
     path = Path(str(getattr(module, "__file__", ""))).with_suffix(SUFFIX)
     if not path.is_file():
@@ -117,16 +97,11 @@ def lesson_of(module: ModuleType) -> Lesson:
         raise FileError(f"What a class may try cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
-    unknown = sorted(set(told) - {*_KNOWN, "pump"})
+    unknown = sorted(set(told) - set(_KNOWN))
     if unknown:
-        raise ConfigError(f"{path}: {unknown[0]} is unknown: give preset, pump or challenge.")
+        raise ConfigError(f"{path}: {unknown[0]} is unknown: give preset or challenge.")
     presets = [Preset(str(each["title"]), dict(each["set"])) for each in _entries(path, told, "preset")]
-    pump = told.get("pump", {}).get("with", [])
-    return Lesson(
-        tuple(presets),
-        tuple(str(name) for name in pump),
-        tuple(_challenge(path, each) for each in _entries(path, told, "challenge")),
-    )
+    return Lesson(tuple(presets), tuple(_challenge(path, each) for each in _entries(path, told, "challenge")))
 
 
 def _entries(path: Path, told: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:

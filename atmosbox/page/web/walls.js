@@ -8,7 +8,7 @@ const POOL = -1; // a drop of negative radius is a layer on the floor: a pool fo
 
 const colour = (rgb) => new THREE.Color().setRGB(...rgb, THREE.SRGBColorSpace);
 
-export class Furniture {
+export class Walls {
   constructor(box) {
     this.box = box;
     this.object = new THREE.Group();

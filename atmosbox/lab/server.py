@@ -1,0 +1,255 @@
+"""The server of a page in which a scene runs: the page, and plans of boxes with other settings, for this computer only.
+
+The engine runs in the page. Python only makes the plan of a box whose settings were changed, because it builds the box,
+and evaluates its theory.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import json
+import os
+import secrets
+import signal
+import socketserver
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from http.server import BaseHTTPRequestHandler
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.lab.lab_file import lab_data
+from atmosbox.lab.lab_start import served_start
+from atmosbox.lab.wasm_module import elsewhere
+from atmosbox.page import lab_page
+from atmosbox.page.lesson import lesson_of
+from atmosbox.scene.spelling import field_name
+from atmosbox.simulation.preparation import Prepared
+
+__all__ = ["HOST", "PORT", "Server", "allowed", "ended"]
+
+HOST = "127.0.0.1"
+PORT = 8642
+"""The first port that is tried."""
+
+_TRIES = 20
+_ONE_AT_A_TIME = threading.Lock()  # a scene is watched while it builds its box, and must not see another's calls
+_LONGEST = 20_000  # characters of the settings in a request
+_PATIENCE = 20.0  # s that a browser may take to send a request
+
+
+def allowed(host: str | None, origin: str | None) -> bool:
+    """Return whether a request comes from our own page.
+
+    A page of another site can make the browser send requests to this computer; such a request has the other site in
+    its header Origin. A domain name of another site can also be made to point to this computer; therefore only numeric
+    addresses and localhost are accepted.
+
+    Parameters
+    ----------
+    host, origin
+        The headers Host and Origin of the request.
+
+    Examples
+    --------
+    >>> allowed("127.0.0.1:8642", "http://127.0.0.1:8642"), allowed("127.0.0.1:8642", "http://evil.example")
+    (True, False)
+    >>> allowed("evil.example:8642", "http://evil.example:8642")
+    False
+    """
+    if host is None:
+        return False
+    try:
+        name = urlsplit(f"//{host}").hostname or ""
+        named = name == "localhost" or bool(ipaddress.ip_address(name))
+    except ValueError:
+        named = False
+    return named and (
+        origin is None or origin.casefold() in (f"http://{host}".casefold(), f"https://{host}".casefold())
+    )
+
+
+class Server(socketserver.ThreadingTCPServer):
+    """A page and its plans, at a port of this computer.
+
+    Parameters
+    ----------
+    prepared
+        The scene.
+    port
+        The port; if there is none, the first free one from `PORT` on.
+    token
+        Text that the address must contain, so that another account of the same computer cannot open the page; with
+        None everybody on this computer is let in.
+    language
+        Of the page, as `atmosbox.page.lab_page` takes it.
+
+    Raises
+    ------
+    AtmosboxError
+        If the scene cannot run in a page, or the port is in use.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> with Server(prepare("elastic-collisions", {"molecules": 10}), token="open-sesame") as server:
+    ...     server.address.endswith(f":{server.server_address[1]}/?token=open-sesame")
+    True
+    """
+
+    allow_reuse_address = os.name == "posix"  # elsewhere it would let two programs share a port
+    daemon_threads = True
+
+    def __init__(
+        self,
+        prepared: Prepared,
+        *,
+        port: int | None = None,
+        token: str | None = None,
+        language: str = "auto",
+    ) -> None:
+        self._written = prepared
+        presets = [each.values for each in lesson_of(prepared.module).presets]
+        self._texts = [text for values in (prepared.settings.as_dict(), *presets) for text in values.values()]
+        self.token = token
+        self.document = lab_page(*self._data(prepared), language=language, served=True)
+        for number in range(PORT, PORT + _TRIES) if port is None else [port]:
+            try:
+                super().__init__((HOST, number), _Answer)
+            except OSError as error:
+                problem = error
+            else:
+                return
+        if port is None:
+            said = f"{PORT} to {PORT + _TRIES - 1}"
+            raise SettingError("port", said, "are all in use", "end another program, or give --port with a free one")
+        raise SettingError(
+            "port", port, "is in use or not allowed", "give another, or leave --port out for a free one"
+        ) from problem
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene."""
+        return self._written.scene
+
+    @property
+    def address(self) -> str:
+        """The address of the page."""
+        return f"http://{HOST}:{self.server_address[1]}/{f'?token={self.token}' if self.token else ''}"
+
+    def knows(self, said: list[str]) -> bool:
+        """Return whether a request contains the token of the page."""
+        return self.token is None or (len(said) == 1 and secrets.compare_digest(said[0].encode(), self.token.encode()))
+
+    def plan(self, settings: Mapping[str, Any]) -> str:
+        """Return the plan of a box with these settings, as JSON.
+
+        Raises
+        ------
+        AtmosboxError
+            If a setting is refused, or the box cannot run in a page.
+        """
+        checked = type(self._written.settings)
+        free = {told.name for told in checked.describe() if told.kind == "str" and not told.choices}
+        for name, text in settings.items():  # a text may name a file, and reading it would tell what is in it
+            if field_name(name) in free and text not in self._texts:
+                raise SettingError(name, text, "cannot be chosen in the page", f"give --set {name} to atmosbox live")
+        prepared = replace(self._written, settings=checked.from_user(settings))
+        _, starts, module, stored = self._data(prepared)
+        return json.dumps({"starts": starts, "module": module, "stored": stored})
+
+    def _data(self, prepared: Prepared) -> tuple[str, list[Any], str, str]:
+        with _ONE_AT_A_TIME:
+            start, module = served_start(prepared, self._written)
+        return lab_data([start], module, prepared.scene, level=1)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Leave a browser that has gone alone, and print nothing."""
+
+
+class _Answer(BaseHTTPRequestHandler):
+    """The answer to one request."""
+
+    server: Server
+    timeout = _PATIENCE
+
+    def do_GET(self) -> None:
+        """Send the page or a plan, or refuse the request."""
+        hosts, origins = (self.headers.get_all(name, []) for name in ("Host", "Origin"))
+        if len(hosts) > 1 or len(origins) > 1:
+            return self._send(400, "A request has one Host and one Origin.")
+        if not allowed(*(found[0] if found else None for found in (hosts, origins))):
+            return self._send(403, "This page is for this computer alone.")
+        address = urlsplit(self.path)
+        asked = parse_qs(address.query, keep_blank_values=True)
+        if not self.server.knows(asked.get("token", [])):
+            return self._send(403, "Take the whole address, with its token, from the terminal.")
+        if address.path == "/":
+            return self._send(200, self.server.document, "text/html")
+        if address.path != "/plan":
+            return self._send(404, "There is one page here, at /.")
+        try:
+            settings = json.loads(asked["settings"][0][:_LONGEST])
+            if not isinstance(settings, dict):
+                raise TypeError
+        except (LookupError, TypeError, ValueError, RecursionError):
+            return self._send(400, "A plan needs its settings as JSON.")
+        try:
+            return self._send(200, self.server.plan(settings), "application/json")
+        except AtmosboxError as error:
+            other = elsewhere(self.server.scene)
+            error.reword(lambda words: words.replace("--set ", "").replace("give --engine dsmc", other))
+            return self._send(422, str(error))
+        except Exception as error:
+            return self._send(500, f"The box cannot be built ({type(error).__name__}: {error}).")
+
+    def _send(self, status: int, text: str, kind: str = "text/plain") -> None:
+        content = text.encode("utf-8")
+        self.send_response_only(status)
+        for name, value in (
+            ("Content-Type", f"{kind}; charset=utf-8"),
+            ("Content-Length", str(len(content))),
+            ("Cache-Control", "no-store"),
+            ("X-Frame-Options", "DENY"),
+            ("Referrer-Policy", "no-referrer"),
+            ("X-Content-Type-Options", "nosniff"),
+        ):
+            self.send_header(name, value)
+        self.end_headers()
+        self.wfile.write(content)
+
+    def log_message(self, *said: Any) -> None:
+        """Print nothing."""
+
+
+def ended(server: Server, opened: Callable[[], None]) -> int:
+    """Serve a page until Ctrl-C or a request to end, and return that signal.
+
+    Parameters
+    ----------
+    server
+        The server.
+    opened
+        Function that is called as soon as the page can be opened.
+    """
+    came: list[int] = []
+    over = threading.Event()
+
+    def end(number: int, frame: object) -> None:
+        came.append(number)
+        over.set()
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    thread = threading.Thread(target=server.serve_forever, name="atmosbox live", daemon=True)
+    thread.start()
+    try:
+        opened()
+        while not over.wait(0.5):
+            pass
+    finally:
+        server.shutdown()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    return came[0]
