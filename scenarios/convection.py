@@ -421,7 +421,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     wind = overlapping_average(np.sign(late.wind_speed.values) * late.wind_speed.values**2)
     if still:
         found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
-    elif float(wind.mean) > 0.0:
+    elif float(wind.mean) > float(wind.standard_error):
         root = np.sqrt(wind.mean)
         speed = BlockAverage(root, 0.5 * wind.standard_error / root)
         found.append(Headline.of_mean("mean_wind_speed", "speed of the wind", speed, None, "m s-1"))
@@ -541,7 +541,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         )  # fmt: skip
     else:
         profile = Panel(
-            "profile", TITLES.get(settings.case, "Turned over, the core is mixed"),
+            "profile", TITLES.get(settings.case, "Mixed air comes near the adiabat"),
             (
                 Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
                 Line("layer_temperature_conduction", "height", "conducted, at rest", "theory"),

@@ -26,9 +26,9 @@ def measured(headlines):
     return xr.Dataset({**made, "ledger": 1e-15}, attrs={"names": list(headlines)})
 
 
-def swept(vary, members=4, law=lambda values: (300.0, 1e5), theory=True, settings=None):
+def swept(vary, members=4, law=lambda values: (300.0, 1e5), theory=True, settings=None, scene="temperature"):
     """Return a sweep whose runs scatter about a law of the settings."""
-    grid = plan("temperature", vary, members=members, settings=settings)
+    grid = plan(scene, vary, members=members, settings=settings)
     rng = np.random.default_rng(1)
     rows = {}
     for task in grid.tasks(Path()):
@@ -167,6 +167,11 @@ def test_every_kind_of_sweep_can_be_drawn_the_same_to_the_byte(tmp_path, vary, w
     first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
     again = read(write(found, tmp_path / "sweep.nc"))
     assert save(again, tmp_path / "second.svg", theme=theme).read_bytes() == first
+
+
+def test_a_sweep_of_gravity_which_is_a_variable_of_runs_too_is_read_again(tmp_path):
+    write(swept(["gravity=5,10"], members=2, scene="atmosphere"), tmp_path / "s.nc")
+    assert read(tmp_path / "s.nc").gravity.values.tolist() == [5.0, 10.0]
 
 
 def test_values_that_span_powers_of_ten_stand_on_a_logarithmic_axis():

@@ -110,7 +110,8 @@ def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> Non
         found, wanted = ("numbers", "text") if numeric else ("text", "numbers")
         raise FileError(f"{source} holds {found} in {name}, where {wanted} belong: run the scene again.")
     dims = held.dimensions[: None if numeric else -1]  # the last one of a text is its length
-    if dims not in (declared.dims, ()):  # a headline is one number, and may have the name of a variable
+    # a headline is one number, and the axis of a sweep; both may have the name of a variable, as gravity has
+    if dims not in (declared.dims, (), (name,)):
         found = " x ".join(dims)
         raise FileError(f"{source} holds {name} as {found}, and not as atmosbox writes it: run the scene again.")
     sizes = held.group().dimensions

@@ -97,9 +97,9 @@ def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
         axes = drawing.add_axes((left / wide, base, width / wide, box / high))
         axes.set_in_layout(False)
         _draw(axes, edges, picture, norm, fastest, look)
-        axes.set_title(
-            f"{words}: {time[span[0], 0]:.0f} to {time[span[1] - 1, 1]:.0f} min", fontsize=look.text, pad=3.0
-        )
+        first, last = time[span[0], 0], time[span[1] - 1, 1]
+        digits = 0 if last - first >= 1.0 else 1
+        axes.set_title(f"{words}: {first:.{digits}f} to {last:.{digits}f} min", fontsize=look.text, pad=3.0)
         if place:
             axes.set_yticklabels([])
         else:
