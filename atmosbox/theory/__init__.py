@@ -21,6 +21,7 @@ wall_law            the energy of molecules that leave a wall; the heat between 
 barometric          how the density of a gas decreases with height
 column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
+walled_gas          a gas in a cube with walls: its density at a pressure, how often its molecules collide
 stirred_column      how the temperature of a stirred column falls with height
 lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
@@ -169,6 +170,7 @@ from atmosbox.theory.wall_law import (
     emission_normal_speed,
     free_molecular_slab,
 )
+from atmosbox.theory.walled_gas import WalledGas, walled_gas
 from atmosbox.theory.well_gas import (
     square_well_compressibility,
     square_well_second_virial,
@@ -202,6 +204,7 @@ __all__ = [
     "SimpleFluid",
     "StirredColumn",
     "VaporNumber",
+    "WalledGas",
     "adiabatic_index",
     "barometric_density",
     "barometric_pressure",
@@ -289,6 +292,7 @@ __all__ = [
     "thin_gas_conductivity",
     "vapor_pressure",
     "virtual_temperature",
+    "walled_gas",
     "water_surface_tension",
     "well_vapor_pressure",
     "wet_bulb_temperature",
