@@ -677,6 +677,10 @@ def test_a_histogram_is_drawn_between_the_bounds_of_its_bins(runs, drawings):
     steps = [patch for patch in axes.patches if isinstance(patch, StepPatch)]
     assert steps[0].get_data().edges == pytest.approx(np.linspace(0, 1400, 36))
     assert steps[0].get_data().values == pytest.approx(runs["temperature"].speed_probability_density)
+    run = runs["temperature"].pad(speed=(0, 60), constant_values=0.0)
+    speeds = 20.0 + 40.0 * np.arange(run.sizes["speed"])
+    run = run.drop_vars("speed_bnds", errors="ignore").assign_coords(speed=variable("speed", speeds, "m s-1"))
+    assert 1200.0 < plot.figure(run).axes[2].get_xlim()[1] < 1500.0 < speeds[-1]  # not to its empty bins
 
 
 def test_discs_are_true_to_size_in_their_box_and_coloured_by_speed(runs, drawings):

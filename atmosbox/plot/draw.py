@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.patches import StepPatch
 
 from atmosbox.plot.atmosphere_picture import draw_atmosphere
 from atmosbox.plot.curve import curve
@@ -22,6 +23,8 @@ Entry = tuple[tuple[Artist, ...], str]
 _NEAR_THE_GROUND = 930.0
 # A single value is drawn in the middle of a logarithmic axis, from the value divided by this to the value times this.
 _ONE_LEVEL = 1.3
+# The axis of a histogram ends where data and theory are below this share of the peak.
+_NEGLIGIBLE = 1e-3
 
 
 def draw(
@@ -166,6 +169,7 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
         axes.set_xlim(left=0.0)
     if panel.kind == "histogram":
         axes.set_ylim(bottom=0.0, top=axes.get_ylim()[1] * 1.05)
+        axes.set_xlim(right=_end_of_histogram(axes))
     elif panel.kind == "profile" and panel.y_scale == "linear":
         low, high = axes.dataLim.intervaly
         if np.isfinite([low, high]).all() and 0.0 <= low < 0.2 * high:
@@ -176,3 +180,13 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
             axes.set_ylim(top=1000.0 * (1000.0 / top) ** 0.02)
     axes.xaxis.set_inverted(panel.x_invert)
     axes.yaxis.set_inverted(panel.y_invert)
+
+
+def _end_of_histogram(axes: Axes) -> float:
+    """Return the abscissa beyond which neither a histogram nor a curve beside it is seen."""
+    curves = [
+        (each.get_data().edges[1:], each.get_data().values) for each in axes.patches if isinstance(each, StepPatch)
+    ]
+    curves += [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in axes.lines]
+    seen = _NEGLIGIBLE * max((np.nanmax(y, initial=0.0) for _, y in curves), default=0.0)
+    return max((float(x[y > seen].max()) for x, y in curves if (y > seen).any()), default=axes.get_xlim()[1])
