@@ -96,8 +96,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     place = engine.scatter(length, np.ones(n), rng)
     parcel = engine.make(place, velocity, length=length, walls=(HeatBath(1.0),) * 6, seed=settings.seed)
     knob = wall_temperature(parcel, scale, settings, low=-200.0, high=WARMEST)
-    fastest = 4.5 * math.sqrt((knob.high + 273.15) / si.temperature)
-    speeds = Speeds(0.125 * np.arange(math.ceil(fastest / 0.125) + 1))
+    bins = math.ceil(36 * math.sqrt((knob.high + 273.15) / si.temperature))
+    speeds = Speeds(np.linspace(0.0, 0.125 * bins, bins + 1))
     facts = {
         "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
         "real molecules per simulated one": "1",

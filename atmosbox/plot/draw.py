@@ -184,9 +184,8 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
 
 def _end_of_histogram(axes: Axes) -> float:
     """Return the abscissa beyond which neither a histogram nor a curve beside it is seen."""
-    curves = [
-        (each.get_data().edges[1:], each.get_data().values) for each in axes.patches if isinstance(each, StepPatch)
-    ]
+    steps = [each.get_data() for each in axes.patches if isinstance(each, StepPatch)]
+    curves = [(edges[1:], values) for values, edges, _ in steps]
     curves += [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in axes.lines]
     seen = _NEGLIGIBLE * max((np.nanmax(y, initial=0.0) for _, y in curves), default=0.0)
     return max((float(x[y > seen].max()) for x, y in curves if (y > seen).any()), default=axes.get_xlim()[1])
