@@ -378,7 +378,7 @@ def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
 def _pressure_of_gas(density: np.ndarray, kT: np.ndarray, settings: Settings) -> np.ndarray:
     """Return the pressure by B2 and B3 [Pa] of a gas of a density [diameter^-3] at a temperature [depth]."""
     factor = law.square_well_compressibility(density, kT / max(settings.attraction, 1e-9))
-    return density * kT * factor * _scale(settings).pressure
+    return np.asarray(density * kT * factor * _scale(settings).pressure)
 
 
 def _densities_of_vapour(dataset: "xr.Dataset", settings: Settings) -> list[np.ndarray]:
