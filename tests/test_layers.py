@@ -264,12 +264,6 @@ def test_a_lawful_import_is_let_through(tmp_path):
         assert planted(tmp_path / str(number), place, source) == []
 
 
-def test_no_name_of_a_file_means_two_things():
-    names = sorted(path.stem for path in ROOT.glob("atmosbox/**/*.py") if path.stem != "__init__")
-    twins = {name for name in names if names.count(name) > 1}
-    assert twins == set()
-
-
 def test_no_kernel_takes_more_than_eight_arguments():
     kernels = {
         f"{path.stem}.{node.name}": len(node.args.args)

@@ -37,11 +37,6 @@ def test_units_are_known_in_capitals_too():
         assert unit_of("pressure", text, "here") == known_unit("hPa")
 
 
-def test_units_of_height_are_metres_under_many_names():
-    for text in ["m", "gpm", "m MSL", "Meters"]:
-        assert unit_of("height", text, "here") == known_unit("m")
-
-
 def test_a_wrong_unit_is_refused_with_the_usual_one():
     cases = [
         (None, "has no unit"),

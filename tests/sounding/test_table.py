@@ -47,12 +47,6 @@ def test_two_levels_of_the_same_pressure_that_differ_are_refused(written, csv_li
         read(written(twice))
 
 
-def test_heights_are_left_out_if_one_is_missing(written, csv_lines, same_as):
-    sounding = read(written(cell(csv_lines, 6, Z, -9999)))
-    same_as(sounding, height=False)
-    assert "Heights left out, for some levels have none." in sounding.remarks
-
-
 def test_a_wide_gap_is_remarked(written, csv_lines):
     del csv_lines[7]
     assert read(written(csv_lines)).remarks == ("The widest gap below 300 hPa, 200 hPa, is from 700 to 500 hPa.",)
