@@ -15,8 +15,8 @@ from atmosbox.cli import app
 from atmosbox.cli.output_name import beside
 from atmosbox.errors import FileError
 from atmosbox.file import netcdf as output
-from atmosbox.plot import comparison
 from atmosbox.plot.compare import compared, naming
+from atmosbox.plot.compare import figure as comparison
 from atmosbox.plot.curve import Curve
 from atmosbox.scene.panels import Line, Panel, to_json
 

@@ -21,9 +21,9 @@ from matplotlib.patches import StepPatch
 
 from atmosbox import plot, scenarios
 from atmosbox.errors import FileError, SettingError
-from atmosbox.plot import caption, tick, unit
+from atmosbox.plot import caption, tick, units
 from atmosbox.plot.curve import curve
-from atmosbox.plot.layout import panels_of
+from atmosbox.plot.run_figure import panels_of
 from atmosbox.scene.panels import Line, Panel, to_json
 from atmosbox.simulation.recording import Recording
 from tests.in_process import typed
@@ -849,9 +849,9 @@ def test_numbers_have_the_digits_that_their_error_allows():
 
 
 def test_a_difference_of_temperatures_in_celsius_is_in_kelvin():
-    assert unit.of_difference("degC") == "K"
-    assert float(unit.convert(5.0, "K", "degC", difference=True)) == 5.0
-    assert float(unit.convert(5.0, "ns", "ps")) == pytest.approx(5000.0)
+    assert units.of_difference("degC") == "K"
+    assert float(units.convert(5.0, "K", "degC", difference=True)) == 5.0
+    assert float(units.convert(5.0, "ns", "ps")) == pytest.approx(5000.0)
 
 
 def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart():

@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 from atmosbox.plot.curve import read
 from atmosbox.plot.theme import DARK, FAINT, OKABE_ITO, Theme
 
-__all__ = ["Ascent", "ascent_of", "draw_atmosphere", "draw_ground", "draw_way"]
-
 Entry = tuple[tuple[Artist, ...], str]
 
 _, _, _, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO

@@ -10,12 +10,10 @@ from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve, unit_of
-from atmosbox.plot.layout import explanation, painter, panels_of
-from atmosbox.plot.number_card import put_numbers
-from atmosbox.plot.pen import Pen
-from atmosbox.plot.place import blank, put_footer, put_heading, put_panels, settle
+from atmosbox.plot.layout import Pen, blank, put_footer, put_heading, put_numbers, put_panels, settle
+from atmosbox.plot.run_figure import explanation, painter, panels_of
 from atmosbox.plot.theme import Theme, find, style
-from atmosbox.plot.unit import spelled
+from atmosbox.plot.units import spelled
 
 __all__ = ["figure_with_box"]
 

@@ -37,6 +37,7 @@ CURVES: dict[str, tuple[tuple[str, ...], tuple[Any, ...], float]] = {
 }
 """Colours and dashes of the curves of each role, and their width in units of the theme's."""
 FIELD_COLOURS = "viridis"
+AGREES = _GREEN
 # Areas differ by colour and by hatching; the background lines of a diagram are paler than any curve.
 AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}
 AREA_HATCHES = {"CAPE": "////", "CIN": "\\\\\\\\"}

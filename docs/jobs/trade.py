@@ -10,7 +10,7 @@ from jobs.registry import ROOT, Findings, job, rounded
 from atmosbox import scenarios, theory
 from atmosbox.engine import Periodic, maxwell_velocities, random_positions
 from atmosbox.file.netcdf import read
-from atmosbox.plot import tradeoff_choice, tradeoff_figure
+from atmosbox.plot import tradeoff_figure
 from atmosbox.scene import engines
 from atmosbox.simulation import accuracy
 
@@ -35,9 +35,7 @@ def trade(found: Findings) -> None:
     for scene in SCENES:
         data = measured(scene)
         found.figure(tradeoff_figure.figure(data), f"tradeoff-{scene}", 130)
-        if scene == SCENES[0]:
-            found.figure(tradeoff_figure.figure(data, all_panels=True), f"tradeoff-{scene}-all", 130)
-        names = tradeoff_choice.foremost(data)
+        names = tradeoff_figure.foremost(data)
         units = ["K" if str(data.unit.sel(quantity=name).item()) == "K" else "%" for name in names]
         head = ["run", "cost", "runs"]
         head += [f"{data.label.sel(quantity=n).item()} [{u}]" for n, u in zip(names, units, strict=True)]

@@ -5,7 +5,7 @@ all runs, with their differences from the first run and the standard errors), `c
 """
 
 from atmosbox.plot.compare.change import Change, Naming, naming
-from atmosbox.plot.compare.compared_file import save
 from atmosbox.plot.compare.difference import Compared, Measured, compared
+from atmosbox.plot.compare.figure import save
 
 __all__ = ["Change", "Compared", "Measured", "Naming", "compared", "naming", "save"]

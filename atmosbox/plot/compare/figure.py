@@ -1,9 +1,12 @@
-"""Several runs in one figure: each panel has the curves of all runs, which differ by colour and by a second cue."""
+"""Several runs in one figure, as a file: the curves of all runs, which differ by colour and by a second cue."""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -13,19 +16,21 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.lines import Line2D
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, SettingError
+from atmosbox.file.output_path import named, write_whole
+from atmosbox.plot import FORMATS
 from atmosbox.plot.caption import footer
+from atmosbox.plot.compare.change import Naming
 from atmosbox.plot.curve import Curve, curve, unit_of
-from atmosbox.plot.draw import Entry, set_limits
-from atmosbox.plot.layout import explanation, panels_of
-from atmosbox.plot.place import page
-from atmosbox.plot.skewt import levels, put_background, skewed_axes, slender
-from atmosbox.plot.stroke import draw_line, draw_steps, line_style
+from atmosbox.plot.draw import Entry, draw_line, draw_steps, line_style, set_limits
+from atmosbox.plot.figure_file import render
+from atmosbox.plot.layout import page
+from atmosbox.plot.run_figure import explanation, panels_of
+from atmosbox.plot.skewt import levels, put_background, put_levels, skewed_axes, slender
 from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find
-from atmosbox.plot.tilt import put_levels
 from atmosbox.scene.panels import Line, Panel
 
-__all__ = ["MOST", "figure", "shared_panels"]
+__all__ = ["MOST", "drawn", "figure", "save", "shared_panels", "spoken"]
 
 MOST = len(DATA_COLOURS)
 """Greatest number of runs in one figure."""
@@ -255,3 +260,78 @@ def _same(one: Curve, other: Curve, *, across: bool) -> bool:
         return False
     scale = max(float(np.ptp(y)), 1e-6 * float(np.abs(y).max()))
     return bool(np.abs(v[inside] - np.interp(u[inside], x, y)).max() <= max(_SAME * scale, 1e-300))
+
+
+_SPELLED = {"degC": "°C", "percent": "%", "um": "µm"}
+
+
+def save(
+    datasets: Sequence[xr.Dataset],
+    names: Naming,
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    *,
+    theme: str = "notes",
+    force: bool = False,
+) -> Path:
+    """Draw several runs into one figure.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        The runs, two to six.
+    names : Naming
+        The labels of the runs, and the settings that differ.
+    path : str or path-like
+        The file; its suffix gives the format unless ``format`` does.
+    format : {"png", "svg", "pdf"}, optional
+        The format, by default that of the suffix.
+    theme : {"notes", "slides"}
+        A figure for a page, or one for a screen.
+    force : bool
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+
+    Raises
+    ------
+    FileError
+        If the file exists, cannot be written, or the runs have no graph in common.
+    SettingError
+        If there are fewer than two or more than six runs, or the format or the theme is unknown.
+
+    Examples
+    --------
+    >>> save([], Naming((), (), (), same=False), "both.png")
+    Traceback (most recent call last):
+    atmosbox.errors.SettingError: FILE is given 0 times: give two to six runs.
+    """
+    if not 2 <= len(datasets) <= MOST:
+        raise SettingError("FILE", None, f"is given {len(datasets)} times", "give two to six runs")
+    path, kind = named(path, format, FORMATS, force=force)
+    find(theme)
+    drawing, title = drawn(datasets, names, theme)
+    parameters = "; ".join(str(dataset.attrs.get("atmosbox_parameters", "")) for dataset in datasets)
+    write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
+    return path
+
+
+def drawn(datasets: Sequence[xr.Dataset], names: Naming, theme: str) -> tuple[Figure, str]:
+    """Return the figure of several runs, and its title."""
+    scenes = dict.fromkeys(str(dataset.attrs.get("title", "")) for dataset in datasets)
+    title = spoken(f"{' and '.join(scenes)}: {names.title}")
+    return figure(datasets, [spoken(label) for label in names.labels], title, theme), title
+
+
+def spoken(text: str) -> str:
+    """Return a text in which units are spelled as they are printed.
+
+    Examples
+    --------
+    >>> spoken("temperature 5 degC / 25 degC")
+    'temperature 5 °C / 25 °C'
+    """
+    return re.sub(r"(?<=\d )\w+", lambda word: _SPELLED.get(word[0], word[0]), text)
