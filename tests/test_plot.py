@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-from matplotlib.colors import LogNorm, to_rgb
+from matplotlib.colors import to_rgb
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
@@ -729,7 +729,6 @@ def test_a_few_very_fast_discs_do_not_take_all_the_colours(runs):
     run["disc_velocity"][:, :6] *= 300.0
     (discs,) = [each for each in plot.figure(run).axes[0].collections if isinstance(each, EllipseCollection)]
     shades = discs.norm(np.linalg.norm(run.disc_velocity[-1].values, axis=1))
-    assert isinstance(discs.norm, LogNorm)
     assert np.ptp(np.clip(shades[6:], 0.0, 1.0)) > 0.3
 
 
@@ -748,11 +747,6 @@ def test_the_ratio_of_masses_is_written_without_exponent(runs, heavy, words):
     run = alone(runs["elastic-collisions"].copy(deep=True))
     run["disc_mass"] = xr.where(run.disc_mass > 2 * AIR, heavy * AIR, AIR)
     assert any(words in text for text in written(plot.figure(run)))
-
-
-def test_a_box_of_unknown_length_is_as_large_as_the_room_that_discs_have_taken(runs):
-    axes = plot.figure(alone(runs["elastic-collisions"]).drop_vars("box_length")).axes[0]
-    assert axes.get_xlim() == pytest.approx((0.0, 20.0), abs=0.5)
 
 
 def test_a_part_of_a_variable_can_be_drawn():

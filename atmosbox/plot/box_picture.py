@@ -13,7 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
-from matplotlib.colors import LogNorm, Normalize, to_rgba
+from matplotlib.colors import Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
@@ -24,7 +24,6 @@ from atmosbox.file.molecules import Molecules
 from atmosbox.plot.caption import number
 from atmosbox.plot.discs import colour_scale, discs, put_discs, trails
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, OKABE_ITO, PALE, Theme
-from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.units import spelled
 from atmosbox.theory.constants import DRY_AIR
 
@@ -383,17 +382,12 @@ def speed_bar(
         The theme: sizes of type, lines and markers.
     """
     axes = figure.add_axes(spot)
-    wide, high = spot[2] * figure.get_figwidth(), spot[3] * figure.get_figheight()
-    log = isinstance(picture.norm, LogNorm)
+    upright = spot[3] * figure.get_figheight() > spot[2] * figure.get_figwidth()
     scale = figure.colorbar(
-        ScalarMappable(picture.norm, picture.colours), cax=axes, extend="both" if log else "max",
-        orientation="vertical" if high > wide else "horizontal",
+        ScalarMappable(picture.norm, picture.colours), cax=axes, extend="max", ticks=MaxNLocator(4),
+        orientation="vertical" if upright else "horizontal",
     )  # fmt: skip
     counted = isinstance(picture, BoxPicture) and picture.held.neighbours is not None
     said = "neighbours" if counted else f"speed ({spelled(picture.speed_unit)})"
-    scale.set_label(said, labelpad=(0.5 if high > wide else 0.1) * look.text)
-    if log:
-        put_ticks(scale.long_axis, log=True, length=72.0 * max(wide, high), size=look.text)
-    else:
-        scale.locator = MaxNLocator(4)
+    scale.set_label(said, labelpad=(0.5 if upright else 0.1) * look.text)
     axes.tick_params(pad=0.15 * look.text)

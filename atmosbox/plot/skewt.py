@@ -230,8 +230,6 @@ _MIXING = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 _MIXING_TOP = 400.0  # upper end of the lines of mixing ratio [hPa]
 _HIGHEST_MOIST = 50.0  # upper end of the moist adiabats [hPa]
 
-Floats = NDArray[np.float64]
-
 
 def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
     """Return the pressures of the levels that a panel marks.
