@@ -5,7 +5,7 @@ variables that these panels show, the headline numbers and the provenance. A fig
 scene and without the engine, and drawing it twice gives the same bytes.
 
 Read in this order: `units` (from SI to the units of a graph), `curve` (from a file to numbers), `theme` (sizes and
-colours), `draw`, `discs` and `skewt` (from numbers to curves), `tick` and `caption` (text), `layout` (a page of panels),
+colours), `draw`, `discs`, `skewt` (from numbers to curves), `tick`, `caption` (text), `layout` (a page of panels),
 `run_figure` (the figure of a run), `compare` (several runs in one figure), `sweep_figure`, `coexistence_figure` (many
 runs), `tradeoff_figure` (speed against accuracy), `box_picture`, `atmosphere_picture`, `box_figure` (the molecules in
 their box, the parcel in its atmosphere) and `figure_file` (PNG, SVG, PDF).

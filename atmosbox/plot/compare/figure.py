@@ -24,11 +24,12 @@ from atmosbox.plot.compare.change import Naming
 from atmosbox.plot.curve import Curve, curve, unit_of
 from atmosbox.plot.draw import Entry, draw_line, draw_steps, line_style, set_limits
 from atmosbox.plot.figure_file import render
-from atmosbox.plot.layout import page
+from atmosbox.plot.layout import Draw, page
 from atmosbox.plot.run_figure import explanation, panels_of
 from atmosbox.plot.skewt import levels, put_background, put_levels, skewed_axes, slender
 from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find
-from atmosbox.scene.panels import Line, Panel
+from atmosbox.plot.units import spelled
+from atmosbox.scene.panels import ROLES, Line, Panel
 
 __all__ = ["MOST", "drawn", "figure", "save", "shared_panels", "spoken"]
 
@@ -81,7 +82,7 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     """
     look = find(theme)
     panels = shared_panels(datasets)
-    draw = _Painter(datasets, labels, look).draw
+    draw = _painter(datasets, labels, look)
     small = _small(datasets) + explanation(datasets[0], panels)
     return page(panels, look, datasets[0], draw, [], small, title)
 
@@ -146,89 +147,68 @@ def _small(datasets: Sequence[xr.Dataset]) -> str:
     return " · ".join(" / ".join(dict.fromkeys(same)) for same in zip(*parts, strict=True))
 
 
-class _Painter:
-    """Draws the panels of several runs."""
+def _painter(datasets: Sequence[xr.Dataset], names: Sequence[str], look: Theme) -> Draw:
+    """Return the function that draws a panel of several runs."""
 
-    def __init__(self, datasets: Sequence[xr.Dataset], labels: Sequence[str], look: Theme) -> None:
-        self.datasets, self.names, self.look = tuple(datasets), tuple(labels), look
-
-    def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        """Draw a panel at its place; it shares the abscissa of the axes above, if any."""
+    def draw(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
         if panel.kind == "skewt":
             skewed, axes = skewed_axes(drawing, spot)
-            entries, _ = self._draw_lines(axes, panel, slender(self.look))
-            put_background(skewed, axes, self.look)
-            first, *rest = (levels(dataset, panel) for dataset in self.datasets)
-            if all(
-                set(each) == set(first) and np.allclose([each[k] for k in first], [*first.values()]) for each in rest
-            ):
-                put_levels(axes, first, self.look)
+            entries, _ = _draw_lines(axes, panel, datasets, names, slender(look))
+            put_background(skewed, axes, look)
+            first, *rest = (levels(dataset, panel) for dataset in datasets)
+            if all({*each} == {*first} and np.allclose([each[k] for k in first], [*first.values()]) for each in rest):
+                put_levels(axes, first, look)
             return axes, entries
-        axes = drawing.add_subplot(spot, sharex=above)
-        axes.set_xscale(panel.x_scale)
-        axes.set_yscale(panel.y_scale)
+        axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
         axes.grid(visible=True)
-        entries, most = self._draw_lines(axes, panel, self.look)
+        entries, most = _draw_lines(axes, panel, datasets, names, look)
         set_limits(axes, panel, most)
         return axes, entries
 
-    def _draw_lines(self, axes: Axes, panel: Panel, look: Theme) -> tuple[list[Entry], int]:
-        """Draw the curves of all runs; return the legend entries and the number of values of the longest curve."""
-        entries: list[Entry] = []
-        most = 0
-        for role in ("data", "theory", "environment", "reference"):
-            lines = [line for line in panel.lines if line.role == role]
-            for index, line in enumerate(lines):
-                curves = {k: curve(d, panel, line) for k, d in enumerate(self.datasets) if _held(d, line)}
-                most = max([most, *(each.x.size for each in curves.values())])
-                if role == "data":
-                    entries += self._draw_measured(axes, panel, (line, index, len(lines)), curves, look)
-                elif curves:
-                    entries += self._draw_calculated(axes, panel, (line, index), curves, look)
-        return entries, most
+    return draw
 
-    def _draw_measured(
-        self, axes: Axes, panel: Panel, which: tuple[Line, int, int], curves: dict[int, Curve], look: Theme
-    ) -> list[Entry]:
-        """Draw a measured curve of each run: colour and marker show the run, dashes show the curve."""
-        line, index, lines = which
-        several = replace(panel, lines=(line, replace(line, label="of another run"))) if line.minus is None else panel
-        entries: list[Entry] = []
-        for run, values in curves.items():
-            colour, dashes = DATA_COLOURS[run], DATA_DASHES[index % len(DATA_DASHES)]
-            if panel.kind == "histogram":
-                drawn = draw_steps(
-                    axes, panel, line, self.datasets[run], look, run, colour=colour,
-                    style=DATA_DASHES[(run + index) % len(DATA_DASHES)], filled=False,
-                )  # fmt: skip
-            else:
-                mark = run + index * len(self.datasets)
-                drawn = draw_line(axes, several, line, values, look, mark, color=colour, linestyle=dashes)
-            name = self.names[run]
-            entries.append((drawn, name if lines == 1 else f"{line.label}, {name}"))
-        return entries
 
-    def _draw_calculated(
-        self, axes: Axes, panel: Panel, which: tuple[Line, int], curves: dict[int, Curve], look: Theme
-    ) -> list[Entry]:
-        """Draw a calculated curve once if all runs have the same, else one for each run in a darker colour.
+def _draw_lines(
+    axes: Axes, panel: Panel, datasets: Sequence[xr.Dataset], names: Sequence[str], look: Theme
+) -> tuple[list[Entry], int]:
+    """Draw the curves of all runs; return the legend entries and the number of values of the longest curve.
 
-        If the scenes of the runs call it differently, as the dry and the moist adiabat, each has its own entry.
-        """
-        line, index = which
-        first, *rest = curves.values()
-        called = {run: _called(self.datasets[run], panel, line) for run in curves}
-        alike = len(set(called.values())) == 1
-        if alike and all(_same(first, other, across=panel.measured_across) for other in rest):
-            return [(draw_line(axes, panel, line, first, look, index), line.label)]
-        entries = []
-        for run, values in curves.items():
-            colour = tuple(_DARKER * part for part in to_rgb(DATA_COLOURS[run]))
-            drawn = draw_line(axes, panel, line, values, look, index, color=colour)
-            entries.append((drawn, f"{called[run]}, {self.names[run]}"))
-        if not alike:
-            return entries
-        return [((Line2D([], [], **line_style(line.role, look, index) | {"color": DARK}),), line.label)]
+    Of a measured curve, colour and marker show the run, dashes show the curve. A calculated curve is drawn once if all
+    runs have the same, else once for each run in a darker colour; if the scenes of the runs call it differently, as the
+    dry and the moist adiabat, each has its own entry.
+    """
+    entries: list[Entry] = []
+    most = 0
+    for role in ROLES:
+        lines = [line for line in panel.lines if line.role == role]
+        for index, line in enumerate(lines):
+            curves = {k: curve(each, panel, line) for k, each in enumerate(datasets) if _held(each, line)}
+            most = max([most, *(each.x.size for each in curves.values())])
+            called = {k: _called(datasets[k], panel, line) for k in curves}
+            alike, laws = len(set(called.values())) < 2, [*curves.values()]
+            if role != "data" and alike and all(_same(laws[0], other, panel) for other in laws[1:]):
+                entries += [(draw_line(axes, panel, line, each, look, index), line.label) for each in laws[:1]]
+                continue
+            several = replace(panel, lines=(line, replace(line, label="of another run"))) if not line.minus else panel
+            for run, values in curves.items():
+                colour, dashes = DATA_COLOURS[run], DATA_DASHES[(run * (panel.kind == "histogram") + index) % 3]
+                if role != "data":
+                    dark = tuple(_DARKER * part for part in to_rgb(colour))
+                    drawn = draw_line(axes, panel, line, values, look, index, color=dark)
+                elif panel.kind == "histogram":
+                    drawn = draw_steps(
+                        axes, panel, line, datasets[run], look, run, colour=colour, style=dashes, filled=False
+                    )
+                else:
+                    mark = run + index * len(datasets)
+                    drawn = draw_line(axes, several, line, values, look, mark, color=colour, linestyle=dashes)
+                label = names[run] if role == "data" and len(lines) == 1 else f"{called[run]}, {names[run]}"
+                if role == "data" or not alike:
+                    entries.append((drawn, label))
+            if role != "data" and curves and alike:
+                grey = Line2D([], [], **line_style(role, look, index) | {"color": DARK})
+                entries.append(((grey,), line.label))
+    return entries, most
 
 
 def _called(dataset: xr.Dataset, panel: Panel, line: Line) -> str:
@@ -246,23 +226,21 @@ def _called(dataset: xr.Dataset, panel: Panel, line: Line) -> str:
     return next(names, line.label)
 
 
-def _same(one: Curve, other: Curve, *, across: bool) -> bool:
+def _same(one: Curve, other: Curve, panel: Panel) -> bool:
     """Tell whether two curves follow the same law, even if their points are at different places."""
-    (x, y), (u, v) = ((each.y, each.x) if across else (each.x, each.y) for each in (one, other))
-    known, seen = np.isfinite(x) & np.isfinite(y), np.isfinite(u) & np.isfinite(v)
-    x, y, u, v = x[known], y[known], u[seen], v[seen]
+    columns = []
+    for x, y, _ in (one, other):
+        known = np.isfinite(x) & np.isfinite(y)
+        along, value = (y, x) if panel.measured_across else (x, y)
+        order = np.argsort(along[known], kind="stable")
+        columns += [along[known][order], value[known][order]]
+    x, y, u, v = columns
     if not x.size or not u.size:
         return bool(x.size == u.size)
-    order = np.argsort(x, kind="stable")
-    x, y = x[order], y[order]
     inside = (u >= x[0] - 1e-9 * abs(x[0])) & (u <= x[-1] + 1e-9 * abs(x[-1]))
-    if inside.sum() < 0.5 * u.size:
-        return False
     scale = max(float(np.ptp(y)), 1e-6 * float(np.abs(y).max()))
-    return bool(np.abs(v[inside] - np.interp(u[inside], x, y)).max() <= max(_SAME * scale, 1e-300))
-
-
-_SPELLED = {"degC": "°C", "percent": "%", "um": "µm"}
+    apart = np.abs(v - np.interp(u, x, y))[inside]
+    return bool(apart.size >= 0.5 * u.size and apart.max() <= max(_SAME * scale, 1e-300))
 
 
 def save(
@@ -334,4 +312,4 @@ def spoken(text: str) -> str:
     >>> spoken("temperature 5 degC / 25 degC")
     'temperature 5 °C / 25 °C'
     """
-    return re.sub(r"(?<=\d )\w+", lambda word: _SPELLED.get(word[0], word[0]), text)
+    return re.sub(r"(?<=\d )\w+", lambda word: spelled(word[0]), text)
