@@ -250,6 +250,8 @@ _NEAR_THE_GROUND = 930.0
 _ONE_LEVEL = 1.3
 # The axis of a histogram ends where data and theory are below this share of the peak.
 _NEGLIGIBLE = 1e-3
+# More curves of one name than this have one entry in the legend.
+_MOST_ALIKE = 3
 
 
 def draw(
@@ -344,7 +346,6 @@ def draw_lines(
     """
     seen: Counter[str] = Counter()
     entries: list[Entry] = []
-    named: set[tuple[str, str]] = set()
     most = 0
     for line in panel.lines:
         index = seen[line.role]
@@ -357,9 +358,9 @@ def draw_lines(
             values = curve(dataset, panel, line)
             artists = draw_line(axes, panel, line, values, theme, index)
             most = max(most, values.x.size)
-        if (line.role, line.label) not in named:
+        called = [label for _, label in entries]
+        if line.label not in called or [each.label for each in panel.lines].count(line.label) <= _MOST_ALIKE:
             entries.append((artists, line.label))
-        named.add((line.role, line.label))
     return entries, most
 
 

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 from matplotlib.artist import Artist
@@ -20,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.text import Annotation, Text
+from matplotlib.text import Annotation
 from matplotlib.transforms import ScaledTranslation, offset_copy
 
 from atmosbox.plot.caption import Reading, axis_labels
@@ -34,7 +33,6 @@ from atmosbox.scene.panels import Panel
 _FIXED = "\u00a0"  # a space that no line breaks at
 
 
-@dataclass
 class Pen:
     r"""Measures text and breaks it into lines of any width; matplotlib itself wraps at the edge of the figure only.
 
@@ -52,19 +50,18 @@ class Pen:
     ['lapse rate', '= 9.8 ± 0.1 K km⁻¹ (of the parcel)']
     """
 
-    figure: Figure
-    known: dict[tuple[str, float, str], float] = field(default_factory=dict, repr=False)
-    """Widths that were already measured [pt]."""
+    def __init__(self, figure: Figure) -> None:
+        self.figure, self._known = figure, dict[tuple[str, float, str], float]()
 
     def width(self, text: str, size: float, weight: str = "normal") -> float:
         """Return the width of a line of text [pt]."""
         asked = text, size, weight
-        if asked not in self.known:  # a page is laid out several times
+        if asked not in self._known:  # a page is laid out several times
             renderer = self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
             font = FontProperties(size=size, weight=weight)
             width, _, _ = renderer.get_text_width_height_descent(text, font, ismath=False)
-            self.known[asked] = float(width) * 72 / self.figure.dpi
-        return self.known[asked]
+            self._known[asked] = float(width) * 72 / self.figure.dpi
+        return self._known[asked]
 
     def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
         """Return text broken into lines of at most a width [pt].
@@ -117,47 +114,32 @@ def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float
     >>> 40.0 < put_numbers(Pen(drawing), [cape], THEMES["notes"], 0.0) < 60.0
     True
     """
-    if not readings:
-        return 0.0
-    width = 72.0 * pen.figure.get_figwidth() - look.text
-    columns = min(len(readings), max(1, int(width / (_NARROWEST * look.text))))
-    each, top = width / columns, below
-    for first in range(0, len(readings), columns):
-        row = readings[first : first + columns]
-        top += max(
-            _put_card(pen, reading, look, 0.5 * look.text + place * each, top, each - look.text)
-            for place, reading in enumerate(row)
-        )
-    return top - below
-
-
-def _put_card(pen: Pen, reading: Reading, look: Theme, left: float, top: float, width: float) -> float:
-    """Write one number, its name and the textbook's value; return the height of this card [pt]."""
-    large, line = _LARGE * look.title, _LEADING * look.text
-    base = top + 0.95 * large
-    _write(pen, reading.number, left, base, large, DARK, bold=True)
-    after = left + pen.width(reading.number, large, "bold") + 0.4 * look.text
-    _write(pen, reading.error, after, base, look.text, DARK)
-    base += 0.25 * large
-    beside = ", ".join(part for part in (reading.theory, reading.difference) if part)
-    for words, colour in ((reading.label, DARK), (beside, FAINT)):
-        for text in pen.wrap(words, width, look.text).split("\n") if words else ():
-            base += line
-            _write(pen, text, left, base, look.text, colour)
-    return base + 0.6 * line - top
-
-
-def _write(pen: Pen, words: str, left: float, base: float, size: float, colour: str, *, bold: bool = False) -> Text:
-    """Write a line of text at a distance from the left and from the upper end of the page [pt].
-
-    The line keeps this distance from the upper end if the page grows later.
-    """
     figure = pen.figure
-    place = figure.transFigure + ScaledTranslation(left / 72.0, -base / 72.0, figure.dpi_scale_trans)
-    text = figure.text(0.0, 1.0, words, transform=place, size=size, color=colour, va="baseline")
-    text.set_fontweight("bold" if bold else "normal")
-    text.set_in_layout(False)
-    return text
+    width = 72.0 * figure.get_figwidth() - look.text
+    columns = max(1, min(len(readings), int(width / (_NARROWEST * look.text))))
+    each, large, top = width / columns, _LARGE * look.title, below
+
+    def write(words: str, left: float, down: float, **look: Any) -> None:
+        # at this distance from the upper end of the page [pt], which it keeps if the page grows later
+        place = figure.transFigure + ScaledTranslation(left / 72.0, -down / 72.0, figure.dpi_scale_trans)
+        figure.text(0.0, 1.0, words, transform=place, **look).set_in_layout(False)
+
+    for first in range(0, len(readings), columns):
+        lowest = top
+        for place, reading in enumerate(readings[first : first + columns]):
+            left, base = 0.5 * look.text + place * each, top + 0.95 * large
+            write(reading.number, left, base, size=large, color=DARK, weight="bold", va="baseline")
+            after = left + pen.width(reading.number, large, "bold") + 0.4 * look.text
+            write(reading.error, after, base, color=DARK, va="baseline")
+            beside = ", ".join(part for part in (reading.theory, reading.difference) if part)
+            base += 0.25 * large
+            for words, colour in ((reading.label, DARK), (beside, FAINT)):
+                for line in pen.wrap(words, each - look.text, look.text).split("\n") if words else ():
+                    base += _LEADING * look.text
+                    write(line, left, base, color=colour, va="baseline")
+            lowest = max(lowest, base)
+        top = lowest + 0.6 * _LEADING * look.text
+    return top - below
 
 
 _TALL = ("profile", "discs", "skewt", "atmosphere")
@@ -402,7 +384,6 @@ def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None
     drawing = pen.figure
     engine, height = drawing.get_layout_engine(), drawing.get_figheight()
     assert engine is not None
-    columns: dict[tuple[int, int], int] = {}
     for _ in range(_ROUNDS):
         if top:
             engine.set(rect=(0.0, 0.0, 1.0, 1.0 - top / 72 / drawing.get_figheight()))  # type: ignore[call-arg]
@@ -413,7 +394,7 @@ def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None
         # The texts of a column have the same left edge, and the titles of a row have the same height.
         ink = [plate.axes.yaxis.get_tightbbox().x0 for plate in plates]  # type: ignore[union-attr]
         edge = {p.column: min(x for x, o in zip(ink, plates, strict=True) if o.column == p.column) for p in plates}
-        heights = [_write_legend(pen, plate, edge[plate.column], look, columns) for plate in plates]
+        heights = [_write_legend(pen, plate, edge[plate.column], look) for plate in plates]
         tops = {p.row: max(h for h, o in zip(heights, plates, strict=True) if o.row == p.row) for p in plates}
         for plate in plates:
             _write_title(pen, plate, edge[plate.column], tops[plate.row], look)
@@ -448,21 +429,15 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
     axes.set_ylabel(label, size=size * min(1.0, max(room / max(longest, 1e-9), _SMALLEST)))
 
 
-def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dict[tuple[int, int], int]) -> float:
-    """Put the legend above the axes and break the note into lines; return the height of both together [pt].
-
-    Legends in one row of panels that have equally many entries get equally many columns; ``columns`` keeps that number
-    for each row and number of entries.
-    """
+def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
+    """Put the legend above the axes and break the note into lines; return the height of both together [pt]."""
     axes, size = plate.axes, look.text
     extent, point = axes.get_window_extent(), pen.figure.dpi / 72
-    room = (extent.x1 - edge) / point
-    height = _GAP * size
+    room, height = (extent.x1 - edge) / point, _GAP * size
     if len(plate.entries) > 1 or any(line.role != "data" for line in plate.panel.lines):
         place = offset_copy(axes.transAxes, pen.figure, (edge - extent.x0) / point, height, units="points")
         labels = [pen.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in plate.entries]
-        alike = (plate.row, len(labels))
-        for number in range(columns.get(alike, len(labels)), 0, -1):
+        for number in range(len(labels), 0, -1):
             legend = axes.legend(
                 [artists if len(artists) > 1 else artists[0] for artists, _ in plate.entries], labels,
                 loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=number, borderpad=0.0,
@@ -471,7 +446,6 @@ def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dic
             )  # fmt: skip
             if legend.get_window_extent().width <= room * point:
                 break
-        columns[alike] = number
         for line in legend.get_lines():
             line.set_linewidth(max(line.get_linewidth(), look.line))
         height += pen.height(legend) + _GAP * size
