@@ -69,7 +69,7 @@ def test_a_wrong_unit_is_told_by_what_would_be_right():
         ("pressure", [101.3, 90.0], "hPa", "kPa"),
     ]
     for quantity, values, unit, looks in cases:
-        with pytest.raises(SoundingError, match=f'looks like {looks}: write "{quantity} .{looks}." or give units='):
+        with pytest.raises(SoundingError, match=f'looks like {looks}: name its unit, as in "{quantity} .{looks}."'):
             check_plausible(quantity, np.array(values), unit, place)
         check_plausible(quantity, np.array(values), looks, place)
 

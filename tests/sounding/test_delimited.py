@@ -38,17 +38,6 @@ def test_units_may_stand_in_the_second_row(written, levels, same_as):
         same_as(read(written([rows[0], units, *rows[1:]])))
 
 
-def test_units_may_be_given(written, levels, same_as):
-    lines = table(levels, ["p", "z", "T", "Td"], lambda *level: level)
-    given = {"pressure": "hPa", "temperature": "degC", "dewpoint": "degC"}
-    same_as(read(written(lines), units=given))
-
-
-def test_units_that_are_given_prevail_over_wrong_ones(written, csv_lines, same_as):
-    csv_lines[0] = csv_lines[0].replace("hPa", "Pa")
-    same_as(read(written(csv_lines), units={"pressure": "hPa"}))
-
-
 def test_comments_and_blank_lines_are_skipped(written, csv_lines, same_as):
     same_as(read(written(["# by hand", "", csv_lines[0], "# the ground", *csv_lines[1:], "", ",,,"])))
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.errors import SoundingError, UnitError, shown
+from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import SIGNS, Unit, known_unit
 
-__all__ = ["QUANTITIES", "Measure", "asked_units", "in_si", "number", "stated_columns", "unit_of"]
+__all__ = ["QUANTITIES", "Measure", "in_si", "number", "stated_columns", "unit_of"]
 
 Floats = NDArray[np.float64]
 
@@ -143,9 +143,7 @@ def unit_of(quantity: str, text: str | None, where: str) -> Unit:
     if unit is None:
         known = f"unit {shown(text)} of the {quantity} is not known" if text and text.strip() else ""
         problem = f"the {known or f'{quantity} has no unit'}"
-    usual = measure.units[0]
-    fix = f'write it as "{quantity} [{usual}]" or give units={{"{quantity}": "{usual}"}}'
-    raise SoundingError(f"{where}: {problem}: {fix}.")
+    raise SoundingError(f'{where}: {problem}: name it, as in "{quantity} [{measure.units[0]}]".')
 
 
 def in_si(values: Floats, unit: Unit) -> Floats:
@@ -157,35 +155,6 @@ def in_si(values: Floats, unit: Unit) -> Floats:
     array([100000.,  85000.])
     """
     return np.asarray(values * (unit.up / unit.down) + unit.offset, dtype=np.float64)
-
-
-def asked_units(units: Mapping[str, str] | None) -> dict[str, str]:
-    """Return the units that a user gave, after a check of each.
-
-    Parameters
-    ----------
-    units
-        Units by the names in :data:`QUANTITIES`.
-
-    Raises
-    ------
-    UnitError
-        If a name is not one of them, or a unit does not belong to the quantity.
-
-    Examples
-    --------
-    >>> asked_units({"pressure": "hPa"})
-    {'pressure': 'hPa'}
-    """
-    given = dict(units or {})
-    for quantity, text in given.items():
-        if quantity not in QUANTITIES:
-            raise UnitError("units", quantity, "is not a column of a sounding", f"name one of {', '.join(QUANTITIES)}")
-        unit = _unit(text) if isinstance(text, str) else None
-        if unit is None or unit.si != QUANTITIES[quantity].si:
-            fix = f'give units={{"{quantity}": "{QUANTITIES[quantity].units[0]}"}}'
-            raise UnitError("units", text, f"is not a unit of {quantity}", fix)
-    return given
 
 
 def number(token: str, quantity: str, where: str) -> float:

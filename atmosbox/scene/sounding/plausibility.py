@@ -76,7 +76,7 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
     >>> check_plausible("temperature", np.array([298.0, 290.0]), "degC", lambda level: f"a.csv, line {level + 2}")
     Traceback (most recent call last):
     atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC does not occur in the atmosphere and looks
-    like K: write "temperature [K]" or give units={"temperature": "K"}.
+    like K: name its unit, as in "temperature [K]".
     """
     measure = QUANTITIES[quantity]
     known = known_unit(unit) or Unit(measure.si)
@@ -91,8 +91,7 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
     for other in measure.units:
         candidate = known_unit(other)
         if candidate and candidate != known and _first_implausible(quantity, values, candidate) is None:
-            fix = f'write "{quantity} [{other}]" or give units={{"{quantity}": "{other}"}}'
-            raise SoundingError(f"{what} and looks like {other}: {fix}.")
+            raise SoundingError(f'{what} and looks like {other}: name its unit, as in "{quantity} [{other}]".')
     ends = " to ".join(f"{(limit - known.offset) * known.down / known.up:.6g}" for limit in (low, measure.high))
     raise SoundingError(f"{what} ({ends} {shown(unit)}): correct it, or write -9999 where it is missing.")
 
@@ -195,10 +194,7 @@ def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, place:
         where = place(count - 1)
         raise SoundingError(f"{where}: the sounding ends after {count} of at least {FEWEST_LEVELS} levels: add more.")
     for i in np.flatnonzero(np.diff(pressure) >= 0.0)[:1] + 1:
-        order = (
-            f"is not below the {hpa[i - 1]:.10g} hPa of the level before it: put the levels in their order from the "
-        )
-        order += "ground up"
+        order = f"is not below the {hpa[i - 1]:.10g} hPa of the level before it: put the levels in order, ground first"
         if pressure[i] == pressure[i - 1]:
             order = "is that of the level before it, whose temperature or dewpoint is another: delete one of the two"
         raise SoundingError(f"{place(i)}: the pressure of {hpa[i]:.10g} hPa {order}.")

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from atmosbox.errors import FileError, SoundingError, shown
-from atmosbox.scene.sounding.column import asked_units
 from atmosbox.scene.sounding.formats import FORMATS, Text
 from atmosbox.scene.sounding.netcdf import SIGNATURES, profile
 from atmosbox.scene.sounding.profile import Sounding
@@ -32,7 +29,7 @@ _MARKS = {
 }
 
 
-def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -> Sounding:
+def read(path: str | os.PathLike[str]) -> Sounding:
     r"""Return the sounding in a file, from the ground up.
 
     The format is recognised by the content: a table of the University of Wyoming, as text, as its web page or as CSV; a
@@ -43,9 +40,6 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
     ----------
     path
         The file.
-    units
-        Units of ``pressure``, ``temperature`` and ``dewpoint``, for a file that states none or wrong ones; they
-        override those of the file.
 
     Returns
     -------
@@ -59,8 +53,6 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
     SoundingError
         If it is empty or has more than 100 000 lines, is in no known format, lacks a column or a unit, or if its
         levels do not make an ascent.
-    UnitError
-        If `units` names another column, or a unit of another quantity.
 
     Examples
     --------
@@ -71,7 +63,6 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
     ...     read(Path(folder, "oslo.csv"))
     <Sounding oslo: 5 levels from 1000 hPa, 25.00 degC to 300 hPa, -40.00 degC>
     """
-    asked = asked_units(units)
     source = Path(path)
     file = shown(os.fspath(source), 200)
     content = _content(source, file)
@@ -79,7 +70,7 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
         table = profile(source, file, source.stem)
     else:
         table = _parsed(Text(re.split(r"\r\n|\r|\n", _decoded(content, file)), file, source.stem))
-    return sounding_of(replace(table, units={**table.units, **asked}))
+    return sounding_of(table)
 
 
 def _content(source: Path, file: str) -> bytes:
