@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
-from itertools import combinations, pairwise, product
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import matplotlib
@@ -492,16 +492,6 @@ def test_long_titles_notes_and_labels_are_broken_into_lines_that_fit():
         box = text.get_window_extent()
         assert drawing.bbox.x0 <= box.x0
         assert box.x1 <= drawing.bbox.x1
-
-
-def test_legends_beside_each_other_have_equally_many_columns(drawings):
-    for scene, theme in product(("lifting-dry", "atmosphere"), plot.THEMES):
-        legends = [axes.get_legend() for axes in drawings[scene, theme].axes]
-        rows: dict[int, set[int]] = {}
-        for legend in legends:
-            heights = {round(text.get_window_extent().y0) for text in legend.get_texts()}
-            rows.setdefault(len(legend.get_texts()), set()).add(len(heights))
-        assert all(len(each) == 1 for each in rows.values())
 
 
 def test_panels_over_each_other_share_the_axis_of_time(drawings):
