@@ -5,18 +5,17 @@ variables that these panels show, the headline numbers and the provenance. A fig
 scene and without the engine, and drawing it twice gives the same bytes.
 
 Read in this order: `units` (from SI to the units of a graph), `curve` (from a file to numbers), `theme` (sizes and
-colours), `draw`, `discs`, `skewt` (from numbers to curves), `tick`, `caption` (text), `layout` (a page of panels),
-`run_figure` (the figure of a run), `compare` (several runs in one figure), `sweep_figure`, `coexistence_figure` (many
-runs), `tradeoff_figure` (speed against accuracy), `box_picture`, `atmosphere_picture`, `box_figure` (the molecules in
-their box, the parcel in its atmosphere) and `figure_file` (PNG, SVG, PDF).
+colours), `draw`, `discs`, `skewt`, `atmosphere_picture`, `box_picture` (from numbers to curves and pictures), `tick`,
+`caption` (text), `layout` (a page of panels), `run_figure` (the figure of a run), `compare` (several runs in one
+figure), `sweep_figure`, `coexistence_figure` (many runs), `tradeoff_figure` (speed against accuracy) and `figure_file`
+(PNG, SVG, PDF).
 """
 
 import sys
 
 from atmosbox.callable_room import CallableRoom
-from atmosbox.plot.box_figure import figure_with_box
 from atmosbox.plot.figure_file import FORMATS, save
-from atmosbox.plot.run_figure import figure
+from atmosbox.plot.run_figure import figure, figure_with_box
 from atmosbox.plot.theme import THEMES
 
 __all__ = ["FORMATS", "THEMES", "figure", "figure_with_box", "save"]

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 
 from atmosbox.file.output_path import named, write_whole
 from atmosbox.plot import sweep_figure, tradeoff_figure
-from atmosbox.plot.box_figure import figure_with_box
-from atmosbox.plot.run_figure import figure
+from atmosbox.plot.run_figure import figure, figure_with_box
 from atmosbox.plot.theme import find, style
 
 FORMATS = ("png", "svg", "pdf")
