@@ -119,7 +119,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
 
     Examples
     --------
-    >>> import xarray as xr
+    >>> import json, xarray as xr
     >>> made = {"dimensions": {"temperature": "temperature"}, "headlines": ["speed"], "members": 4}
     >>> swept = xr.Dataset(
     ...     {"speed": ("temperature", [448.0, 468.0], {"units": "m s-1", "long_name": "mean speed"})},
