@@ -292,7 +292,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the temperature of the bath, the saturation pressure, and the pressure of the free vapour by B2 and B3."""
+    """Return the temperature of the thermostat, the saturation pressure, and the pressure of the vapour by B2, B3."""
     scale = _scale(settings)
     frames = dataset.sizes["elapsed_time"]
     found = {}
@@ -302,12 +302,12 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         saturated = float(law.well_vapor_pressure(_warmth(settings))) * settings.attraction * scale.pressure
         found["normal_pressure_theory"] = np.full(frames, saturated)
     elif not settings.air:
-        free = dataset.vapor_molecule_count.values / settings.molecules * settings.density * law.WELL_CRITICAL_DENSITY
-        kT = dataset.air_temperature.values / scale.temperature
-        depth = max(settings.attraction, 1e-9)
-        factor = law.square_well_compressibility(free, kT / depth)
+        density = _densities_of_vapour(dataset, settings)[1]
+        if _Vapour(dataset, settings).alone:
+            density = np.full(frames, settings.density * law.WELL_CRITICAL_DENSITY)
+        pressure = _pressure_of_gas(density, dataset.air_temperature.values / scale.temperature, settings)
         # where the series is negative it is not valid: a vapour so cold and dense must condense
-        found["virial_pressure_theory"] = np.where(factor > 0.0, free * kT * factor * scale.pressure, np.nan)
+        found["virial_pressure_theory"] = np.where(pressure > 0.0, pressure, np.nan)
     return found
 
 
@@ -483,13 +483,36 @@ def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
     )
 
 
-class _Vapour:
-    r"""The free vapour around drops: its pressure by B2 and B3, and how much its number fluctuates.
+def _pressure_of_gas(density: np.ndarray, kT: np.ndarray, settings: Settings) -> np.ndarray:
+    """Return the pressure by B2 and B3 [Pa] of a gas of a density [diameter^-3] at a temperature [depth]."""
+    factor = law.square_well_compressibility(density, kT / max(settings.attraction, 1e-9))
+    return np.asarray(density * kT * factor * _scale(settings).pressure)
+
+
+def _densities_of_vapour(dataset: "xr.Dataset", settings: Settings) -> list[np.ndarray]:
+    """Return the least, the middle and the greatest density that the free vapour may have in each frame [diameter^-3].
 
     The surface of a drop is not sharp. The vapour may fill the box up to where a drop as dense as the liquid would end,
     or up to a range of the wells farther out, where a molecule counts as part of the drop: theory takes the middle, and
     half the difference is how far it may be off.
     """
+    number, largest = dataset.vapor_molecule_count.values, dataset.largest_drop_molecule_count.values
+    drops = dataset.drop_count.values
+    others = np.maximum(drops - 1.0, 1.0)
+    sizes = (largest, np.ones(len(drops))), ((settings.molecules - number - largest) / others, others)
+    box, dense = math.prod(_sides(settings)[0]), _densities(min(_warmth(settings), 1.2))[0]
+    held = [
+        sum(
+            many * (size > 0.0) * 4.0 / 3.0 * np.pi * (np.cbrt(0.75 * size / (np.pi * dense)) + out) ** 3
+            for size, many in sizes
+        )
+        for out in (0.0, 0.5 * RANGE, RANGE)
+    ]
+    return [number / np.maximum(box - each, 0.1 * box) for each in held]
+
+
+class _Vapour:
+    """The free vapour around drops: its pressure by B2 and B3, and how much its number fluctuates."""
 
     def __init__(self, dataset: "xr.Dataset", settings: Settings) -> None:
         self.settings, self.scale = settings, _scale(settings)
@@ -497,19 +520,8 @@ class _Vapour:
         self.measured = half.virial_pressure.values
         self.kT = half.air_temperature.values / self.scale.temperature
         number, largest = half.vapor_molecule_count.values, half.largest_drop_molecule_count.values
-        drops = half.drop_count.values
         self.alone = largest.mean() < 0.1 * settings.molecules
-        others = np.maximum(drops - 1.0, 1.0)
-        sizes = (largest, np.ones(len(drops))), ((settings.molecules - number - largest) / others, others)
-        self.box, dense = math.prod(_sides(settings)[0]), _densities(min(_warmth(settings), 1.2))[0]
-        held = [
-            sum(
-                many * (size > 0.0) * 4.0 / 3.0 * np.pi * (np.cbrt(0.75 * size / (np.pi * dense)) + out) ** 3
-                for size, many in sizes
-            )
-            for out in (0.0, 0.5 * RANGE, RANGE)
-        ]
-        self.density = [number / np.maximum(self.box - each, 0.1 * self.box) for each in held]
+        self.density = _densities_of_vapour(half, settings)
         # the variance of the number of molecules of a gas that may leave it, from its compressibility
         density, depth = float(self.density[1][-1]), max(settings.attraction, 1e-9)
         second, third = (
@@ -518,18 +530,14 @@ class _Vapour:
         stiff = 1.0 + 2.0 * (second - 1.0) * 1e6 * density
         stiff += 3.0 * (third - 1.0 - (second - 1.0) * 1e6 * density)
         self.error = math.sqrt(float(number[-1]) / stiff) if stiff > 0.0 else 0.0
-        self.error_of_drop = self.error if drops[-1] == 1.0 else 0.0
+        self.error_of_drop = self.error if half.drop_count.values[-1] == 1.0 else 0.0
         if self.alone:  # where clusters are rare, their number in one frame has no error bar
             often = bool(largest.mean() > 1.0)
             self.error, self.error_of_drop = (float(each.std(ddof=1)) * often for each in (number, largest))
 
     def pressure(self) -> Headline:
         """Return the mean pressure, beside that of a gas as dense as the free vapour."""
-        depth = max(self.settings.attraction, 1e-9)
-        low, theory, high = (
-            each * self.kT * law.square_well_compressibility(each, self.kT / depth) * self.scale.pressure
-            for each in self.density
-        )
+        low, theory, high = (_pressure_of_gas(each, self.kT, self.settings) for each in self.density)
         apart = block_average(self.measured - theory, BLOCKS // 2)
         known = None if self.settings.air or not (np.asarray(theory) > 0.0).all() else float(np.mean(theory))
         return Headline.of_mean(
@@ -642,18 +650,20 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         headline="last_largest_drop_molecule_count" if settings.start != "slab" else "",
     )
     energies = over_time(
-        "What the wells give becomes motion" if settings.bath == "none" else "What the wells give, the bath takes",
+        "Energy from attraction becomes motion"
+        if settings.bath == "none"
+        else "Energy from attraction goes to the thermostat",
         {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"}
         | ({"heat_from_bath": "from the thermostat"} if settings.bath == "random" else {}),
         "energy",
         "zJ",
     )
     warm = over_time(
-        "Condensation warms" if settings.start == "vapour" else "Temperature",
+        "Condensation releases heat" if settings.start == "vapour" else "Temperature",
         {"air_temperature": "molecules"},
         "temperature",
         "K",
-        theory="bath" if settings.bath != "none" else "",
+        theory="thermostat" if settings.bath != "none" else "",
         headline="mean_temperature",
     )
     if settings.start in ("slab", "pool"):

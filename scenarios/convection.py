@@ -46,7 +46,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.instruments.flow import CORE
-from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import BlockAverage, growth_per_step, overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -342,12 +342,9 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "time": f"{settings.duration:g} s, of which the first {settings.duration * SETTLE / FRAMES:.0f} are left "
             "out of the means",
         },
-        knobs=(
-            *(
-                wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
-                for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
-            ),
-            gravity(parcel, scale, settings, low=0.0, high=50.0),
+        knobs=tuple(
+            wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
+            for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
         ),
     )
 

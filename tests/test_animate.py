@@ -19,7 +19,7 @@ from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.graph import chosen
 from atmosbox.film.pace import MOST, pace
 from atmosbox.film.running import Running
-from atmosbox.plot.layout import panels_of
+from atmosbox.plot.run_figure import panels_of
 from atmosbox.plot.theme import find, style
 from atmosbox.scene.panels import Line, Panel, to_json
 

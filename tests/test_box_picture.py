@@ -11,8 +11,7 @@ from atmosbox.cli import app
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.file.netcdf import write
 from atmosbox.plot import figure_with_box
-from atmosbox.plot.box_picture import BoxPicture
-from atmosbox.plot.camera import FACES, Camera, corners
+from atmosbox.plot.box_picture import FACES, BoxPicture, Camera, corners
 from atmosbox.plot.theme import find
 
 

@@ -15,8 +15,8 @@ from atmosbox.cli import app
 from atmosbox.cli.output_name import beside
 from atmosbox.errors import FileError
 from atmosbox.file import netcdf as output
-from atmosbox.plot import comparison
 from atmosbox.plot.compare import compared, naming
+from atmosbox.plot.compare import figure as comparison
 from atmosbox.plot.curve import Curve
 from atmosbox.scene.panels import Line, Panel, to_json
 
@@ -191,11 +191,14 @@ def test_theory_is_drawn_once_if_it_is_the_same_and_else_for_each(files):
     assert each == once + 2  # the adiabat, and the environment
 
 
+PLAIN = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
+
+
 def test_one_law_at_other_places_is_the_same_law():
     x = np.linspace(0.0, 1.0, 30)
     law = Curve(x, x**2, None)
-    assert comparison._same(law, Curve(x[1:-1] + 0.01, (x[1:-1] + 0.01) ** 2, None), across=False)
-    assert not comparison._same(law, Curve(x, x**2 + 0.01, None), across=False)
+    assert comparison._same(law, Curve(x[1:-1] + 0.01, (x[1:-1] + 0.01) ** 2, None), PLAIN)
+    assert not comparison._same(law, Curve(x, x**2 + 0.01, None), PLAIN)
 
 
 def test_runs_in_other_units_of_time_are_drawn_in_one():

@@ -20,7 +20,7 @@ from atmosbox.engine import CoarseStepWarning
 from atmosbox.errors import FileError, SettingError, UnknownSettingError
 from atmosbox.file.netcdf import read, write
 from atmosbox.plot import save, tradeoff_figure
-from atmosbox.plot.tradeoff_choice import recommended
+from atmosbox.plot.tradeoff_figure import recommended
 from atmosbox.scene.setup import Series
 from atmosbox.simulation.accuracy import choose
 from atmosbox.trade import repetition, timed_run
@@ -223,11 +223,11 @@ def test_ctrl_c_keeps_what_was_measured():
     assert found.members.values.tolist() == [1, 0, 0]
 
 
-@pytest.mark.parametrize(("theme", "all_panels"), [("notes", False), ("notes", True), ("slides", False)])
-def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_path, theme, all_panels):
+@pytest.mark.parametrize("theme", ["notes", "slides"])
+def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_path, theme):
     saved = write(found, tmp_path / "trade.nc")
-    first = save(found, tmp_path / "first.svg", theme=theme, all_panels=all_panels).read_bytes()
-    assert save(read(saved), tmp_path / "second.svg", theme=theme, all_panels=all_panels).read_bytes() == first
+    first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
+    assert save(read(saved), tmp_path / "second.svg", theme=theme).read_bytes() == first
 
 
 def stored(scene):
@@ -247,19 +247,18 @@ def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
 
 @pytest.mark.parametrize("scene", ["atmosphere", "lifting-dry", "lifting-moist", "temperature-large"])
 @pytest.mark.parametrize("theme", ["notes", "slides"])
-def test_one_panel_names_its_curves_where_they_are_and_covers_none_of_the_words(scene, theme):
+def test_the_figure_names_its_curves_and_the_recommended_run_within_the_page(scene, theme):
     dataset = stored(scene)
     drawing = tradeoff_figure.figure(dataset, theme)
     drawing.draw_without_rendering()
     (axes,) = drawing.axes
-    words = [text.get_text() for text in axes.texts]
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
     assert sum(text.startswith("recommended: ") for text in words) == 1
     assert len(words) == 1 + len({int(row) for row in dataset.series.values[dataset.members.values > 0]})
-    boxes = [text.get_window_extent() for text in axes.texts]
-    assert not any(box.overlaps(other) for k, box in enumerate(boxes) for other in boxes[k + 1 :])
-    for box in boxes:
-        assert drawing.bbox.x0 < box.x0
-        assert box.x1 < drawing.bbox.x1
+    box = axes.get_legend().get_window_extent()
+    assert drawing.bbox.x0 < box.x0
+    assert box.x1 < drawing.bbox.x1
+    assert box.y0 > axes.bbox.y1
 
 
 def test_another_experiment_is_not_recommended_however_good():

@@ -100,8 +100,4 @@ PageTheme = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Verbose = Annotated[bool, typer.Option("--verbose", help="Say more, with the traceback of a bug.")]
-AllPanels = Annotated[
-    bool,
-    typer.Option("--all-panels", help="Of a tradeoff: all its quantities, each with bias, noise and laws."),
-]
 Force = Annotated[bool, typer.Option("--force", help="Replace the file if there is one.")]

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import AllPanels, Force, Format, RunFile, Theme, Verbose, out_option, quiet_option
+from atmosbox.cli.option import Force, Format, RunFile, Theme, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
 
@@ -32,7 +32,6 @@ def plot(
             help="Draw the molecules in their box, at the start, half-way and at the end, over the graphs.",
         ),
     ] = False,
-    all_panels: AllPanels = False,
     force: Force = False,
     quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
     verbose: Verbose = False,
@@ -48,4 +47,4 @@ def plot(
 
     from atmosbox.plot import save
 
-    say(str(save(dataset, path, format, theme=theme, force=force, with_box=with_box, all_panels=all_panels)))
+    say(str(save(dataset, path, format, theme=theme, force=force, with_box=with_box)))

@@ -218,7 +218,7 @@ def _say_interrupted(
         return
     part = checkpoint.part
     frames = int(stop.outcome.dataset.sizes.get("elapsed_time", 0))
-    from atmosbox.plot.layout import panels_of
+    from atmosbox.plot.run_figure import panels_of
 
     kept = f"stopped: {frames} complete frames are kept in {part}"
     with contextlib.suppress(FileError):  # of too few frames there is no figure

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import AllPanels, Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
+from atmosbox.cli.option import Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
 from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
 from atmosbox.errors import SettingError
@@ -37,7 +37,6 @@ def tradeoff(
     out: Annotated[
         str | None, out_option("The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]")
     ] = None,
-    all_panels: AllPanels = False,
     force: Force = False,
     as_json: Json = False,
     quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
@@ -51,7 +50,7 @@ def tradeoff(
     """
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
-    from atmosbox.plot.tradeoff_choice import recommended
+    from atmosbox.plot.tradeoff_figure import recommended
     from atmosbox.scene.parameter import Parameter
     from atmosbox.scene.spelling import assignments
     from atmosbox.trade.tradeoff import measure
@@ -82,7 +81,7 @@ def tradeoff(
             note=None if quiet else lambda text: tell(f"note: {text}"),
         )
     write_whole(files[1], as_csv(found).encode())
-    save(found, files[2], force=force, all_panels=all_panels)
+    save(found, files[2], force=force)
     if as_json:
         best = recommended(found)
         way = None if best is None else str(found.rung.values[best[0]])
@@ -131,7 +130,7 @@ def as_csv(found: xr.Dataset) -> str:
 
 def lines(found: xr.Dataset, columns: int) -> list[str]:
     """Return the measurement as text: bias with its standard error, and in brackets the noise of a single run."""
-    from atmosbox.plot.tradeoff_choice import WANTED, foremost, recommended
+    from atmosbox.plot.tradeoff_figure import WANTED, foremost, recommended
 
     chosen = foremost(found)
     header = ["run", "seconds", "cost", "runs"]

@@ -18,7 +18,7 @@ from atmosbox.file.molecules import molecules
 from atmosbox.file.output_path import named, whole_file
 from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.pace import Pace, pace
-from atmosbox.plot.layout import panels_of
+from atmosbox.plot.run_figure import panels_of
 from atmosbox.plot.theme import Theme, find, style
 
 if TYPE_CHECKING:

@@ -15,11 +15,10 @@ from atmosbox.film.graph import Graph, GraphPainter, chosen
 from atmosbox.film.running import Running
 from atmosbox.plot.box_picture import box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer
-from atmosbox.plot.layout import explanation, panels_of
-from atmosbox.plot.pen import Pen
-from atmosbox.plot.place import blank, put_panels, settle
+from atmosbox.plot.layout import Pen, blank, put_panels, settle
+from atmosbox.plot.run_figure import explanation, panels_of
 from atmosbox.plot.theme import FAINT, Theme
-from atmosbox.plot.unit import convert, spelled
+from atmosbox.plot.units import convert, spelled
 from atmosbox.scene.conversion import to_si
 
 if TYPE_CHECKING:

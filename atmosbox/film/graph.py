@@ -16,12 +16,11 @@ from matplotlib.patches import Rectangle
 from atmosbox.film.running import Running
 from atmosbox.plot.atmosphere_picture import ascent_of, draw_ground, draw_way
 from atmosbox.plot.curve import Curve, curve
-from atmosbox.plot.draw import Entry
-from atmosbox.plot.layout import painter
+from atmosbox.plot.draw import Entry, draw_line, draw_steps
+from atmosbox.plot.run_figure import painter
 from atmosbox.plot.skewt import SHADE_ORDER, slender
-from atmosbox.plot.stroke import draw_line, draw_steps
 from atmosbox.plot.theme import DARK, DATA_COLOURS, Theme
-from atmosbox.plot.unit import convert
+from atmosbox.plot.units import convert
 from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:

@@ -46,7 +46,6 @@ def plot(
     *,
     theme: Literal["notes", "slides"] = "notes",
     with_box: bool = False,
-    all_panels: bool = False,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
 ) -> Figure:
@@ -61,8 +60,6 @@ def plot(
     with_box
         Whether to draw the molecules at the start, half-way and at the end, above the graphs; the run must have been
         made with ``save_molecules=True``.
-    all_panels
-        Whether to draw all quantities of a measured tradeoff, and not only the most important one.
     out
         A file to write as well: PNG, SVG or PDF, as its suffix says.
     force
@@ -94,8 +91,8 @@ def plot(
         find(theme)
         dataset = opened(run)
         if out is not None:
-            save(dataset, out, theme=theme, force=force, with_box=with_box, all_panels=all_panels)
-        return _shown(drawn(dataset, theme, with_box=with_box, all_panels=all_panels), theme)
+            save(dataset, out, theme=theme, force=force, with_box=with_box)
+        return _shown(drawn(dataset, theme, with_box=with_box), theme)
 
 
 class Comparison:
@@ -169,8 +166,7 @@ def compare(
     from pathlib import Path
 
     from atmosbox.plot.compare import compared, naming
-    from atmosbox.plot.compare.compared_file import drawn, save
-    from atmosbox.plot.comparison import MOST
+    from atmosbox.plot.compare.figure import MOST, drawn, save
     from atmosbox.plot.theme import find
     from atmosbox.text.comparison_table import comparison_lines
 

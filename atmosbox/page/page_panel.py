@@ -109,7 +109,7 @@ def panel_record(
     >>> record["y"]["unit"], record["lines"][0]["y"]
     ('°C', {'name': 'air_temperature', 'factor': 1.0, 'offset': -273.15})
     """
-    from atmosbox.plot.unit import of_difference, spelled
+    from atmosbox.plot.units import of_difference, spelled
 
     first = panel.lines[0]
     shown = {
@@ -149,7 +149,7 @@ def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Call
     from atmosbox.plot.curve import WORST
 
     def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
-        from atmosbox.plot.unit import convert
+        from atmosbox.plot.units import convert
 
         zero, one = convert(np.array([0.0, 1.0]), meaning(name).unit, unit, name=name, difference=difference)
         return {"name": name, "factor": float(f"{one - zero:.12g}"), "offset": float(f"{zero:.12g}")}

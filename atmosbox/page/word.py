@@ -224,7 +224,7 @@ def _phrase(value: object, unit: str) -> str:
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, int | float) and math.isfinite(value):
-        from atmosbox.plot.unit import spelled
+        from atmosbox.plot.units import spelled
 
         return f"{value:.6g} {'' if unit == '1' else spelled(unit)}".replace("-", "\u2212").rstrip()
     return str(value)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from atmosbox.plot.curve import read
 from atmosbox.plot.theme import DARK, FAINT, OKABE_ITO, Theme
 
-__all__ = ["Ascent", "ascent_of", "draw_atmosphere", "draw_ground", "draw_way"]
-
 Entry = tuple[tuple[Artist, ...], str]
+Floats = NDArray[np.float64]
 
 _, _, _, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO
 _SKY = LinearSegmentedColormap.from_list("sky", ("#e4f0f8", "#9cc4e2"))
@@ -42,21 +41,21 @@ _GAP = 0.07
 class Ascent(NamedTuple):
     """The path of a parcel from the file, one value for each frame."""
 
-    time: NDArray[np.float64]
+    time: Floats
     """Elapsed time as a share of the whole run, from 0 to 1."""
-    height: NDArray[np.float64]
+    height: Floats
     """Height [km]."""
-    temperature: NDArray[np.float64]
+    temperature: Floats
     """Measured temperature [degC]."""
-    pressure: NDArray[np.float64]
+    pressure: Floats
     """Pressure of the environment at that height [hPa]."""
-    radius: NDArray[np.float64]
+    radius: Floats
     """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
-    liquid: NDArray[np.float64]
+    liquid: Floats
     """Measured liquid per dry air [kg kg-1]; 0 in a scene without water."""
-    haze: NDArray[np.float64]
+    haze: Floats
     """Liquid per dry air above which it is a cloud [kg kg-1]; infinite if the file does not tell."""
-    rain: NDArray[np.float64]
+    rain: Floats
     """Measured rain per dry air from the start up to the frame [kg kg-1]; 0 where none falls."""
     base: float
     """Height of the measured cloud base [km]; NaN where the run measures none above the ground."""
@@ -243,23 +242,25 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     """
     entries: list[Entry] = []
     across, seen = _across(way), way.cloudy & (np.arange(way.height.size) <= until)
-    bottom, top = axes.get_ylim()
+    room = float(np.ptp(axes.get_ylim()))
     base = way.base if np.isfinite(way.base) else float(way.height[seen.argmax() if seen.any() else until])
-    if seen.any() and way.crosses:
-        _puffs(axes, across[seen], way.height[seen], 1.4 * np.sqrt(way.liquid[seen] / way.liquid.max()), theme)
-    elif seen.any():
-        _tower(axes, base, float(way.height[: until + 1].max()), theme)
     if seen.any():
+        if way.crosses:
+            size = 1.4 * np.sqrt(way.liquid[seen] / way.liquid.max())
+            _puffs(axes, across[seen], way.height[seen], size, theme)
+        else:
+            _tower(axes, base, float(way.height[: until + 1].max()), room, theme)
         entries.append(((Patch(facecolor=_CLOUD, edgecolor=_RIM, linewidth=theme.line),), "cloud"))
     fallen = way.rain[: until + 1]
     if fallen[-1] > 0.0:
         falling = np.flatnonzero(np.diff(fallen) > _FAINTEST_RAIN * way.rain[-1])
-        if way.crosses:
-            start, low = way.height[falling], way.height[falling] - _GAP * (top - bottom)
-            rain = _streaks(axes, across[falling], start, low, theme)
-        else:
-            rain = _streaks(axes, np.linspace(_MIDDLE - 0.25, _MIDDLE + 0.25, 9), base, 0.0, theme)
-        entries.append((rain, "rain"))
+        x, above, below = across[falling], way.height[falling], way.height[falling] - _GAP * room
+        if not way.crosses:
+            x, above, below = np.linspace(_MIDDLE - 0.25, _MIDDLE + 0.25, 9), np.full(9, base), np.zeros(9)
+        streaks = np.stack([np.stack([x, above], axis=1), np.stack([x - 0.012, below], axis=1)], axis=1)
+        look: dict[str, Any] = {"linewidth": theme.line, "zorder": 2.5}
+        axes.add_collection(LineCollection([*streaks], colors=_BLUE, **look), autolim=False)
+        entries.append(((Line2D([], [], color=_BLUE, **look),), "rain"))
     x, y = across[stations], way.height[stations]
     area = np.pi * (_RADIUS * theme.text * way.radius[stations]) ** 2
     colours = [_RIM if cloudy else _CLEAR for cloudy in way.cloudy[stations]]
@@ -279,65 +280,46 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     return [((parcel,), "parcel"), *entries]
 
 
-def _across(way: Ascent) -> NDArray[np.float64]:
+def _across(way: Ascent) -> Floats:
     """Return the horizontal position of the parcel: constant on a vertical path, from end to end over mountains."""
     return 0.055 + 0.89 * way.time if way.crosses else np.full_like(way.time, _MIDDLE)
 
 
-def _base(dataset: xr.Dataset, height: NDArray[np.float64], pressure: NDArray[np.float64]) -> float:
+def _base(dataset: xr.Dataset, height: Floats, pressure: Floats) -> float:
     """Return the height of the measured cloud base [km]; NaN where there is none above the ground."""
     if "cloud_base" not in dataset or float(dataset.cloud_base) > pressure.max():
         return float("nan")
     return float(np.interp(-np.log(float(dataset.cloud_base)), -np.log(pressure), height)) / 1e3
 
 
-def _turns(height: NDArray[np.float64]) -> NDArray[np.int64]:
+def _turns(height: Floats) -> NDArray[np.int64]:
     """Return the indices of the frames in which a path begins, turns up or down, and ends."""
     rising = np.sign(np.diff(height))
     rising[rising == 0.0] = 1.0
     return np.concatenate([[0], np.flatnonzero(np.diff(rising)) + 1, [height.size - 1]])
 
 
-def _puffs(
-    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], size: NDArray[np.float64] | float, theme: Theme
-) -> list[PathCollection]:
+def _puffs(axes: Axes, x: Floats, y: Floats, size: Floats, theme: Theme) -> list[PathCollection]:
     """Draw a cloud as discs whose radius is in units of the type size: first their common rim, then the white area."""
-    area = np.broadcast_to(np.pi * (np.asarray(size) * theme.text) ** 2, np.shape(x))
+    area = np.pi * (size * theme.text) ** 2
     rim = axes.scatter(x, y, area, _RIM, linewidths=1.6 * theme.line, edgecolors=_RIM, zorder=1.8)
     return [rim, axes.scatter(x, y, area, _CLOUD, linewidths=0.0, zorder=1.9)]
 
 
-def _tower(axes: Axes, base: float, top: float, theme: Theme) -> None:
+def _tower(axes: Axes, base: float, top: float, room: float, theme: Theme) -> None:
     """Draw a cloud with a flat base that becomes narrower upward."""
-    bottom, ceiling = axes.get_ylim()
-    rows = max(2, round(16.0 * (top - base) / (ceiling - bottom)))
+    rows = max(2, round(16.0 * (top - base) / room))
     share, place = np.repeat(np.linspace(0.0, 1.0, rows), _PUFFS), np.tile(np.linspace(-1.0, 1.0, _PUFFS), rows)
     rng = np.random.default_rng(5)  # the same cloud in every picture
-    half = 0.36 - 0.14 * share * (top - base) / (ceiling - bottom)
+    half = 0.36 - 0.14 * share * (top - base) / room
     radius = 1.2 + 0.5 * rng.random(share.size)
-    up = base + np.clip(share, 0.0, 1.0) * (top - base)
-    puffs = _puffs(axes, _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size)), up, radius, theme)
+    across = _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size))
+    above = Rectangle((0.0, base), 1.0, room, transform=axes.transData)
+    for puffs in _puffs(axes, across, base + share * (top - base), radius, theme):
+        puffs.set_clip_path(above)
     inside = float(half.min())  # half width of a rectangle that fills gaps between the puffs
-    axes.add_patch(
-        Rectangle((_MIDDLE - inside, base), 2.0 * inside, top - base, color=_CLOUD, linewidth=0.0, zorder=1.95)
-    )
-    above = Rectangle((0.0, base), 1.0, ceiling - base, transform=axes.transData)
-    for each in puffs:
-        each.set_clip_path(above)
-
-
-def _streaks(
-    axes: Axes,
-    across: NDArray[np.float64],
-    above: NDArray[np.float64] | float,
-    below: NDArray[np.float64] | float,
-    theme: Theme,
-) -> tuple[Artist, ...]:
-    """Draw streaks of rain from one height down to another."""
-    above, below = np.broadcast_to(above, across.shape), np.broadcast_to(below, across.shape)
-    lines = [[(x, high), (x - 0.012, low)] for x, high, low in zip(across, above, below, strict=True)]
-    axes.add_collection(LineCollection(lines, colors=_BLUE, linewidths=theme.line, zorder=2.5), autolim=False)
-    return (Line2D([], [], color=_BLUE, linewidth=theme.line),)
+    gaps = Rectangle((_MIDDLE - inside, base), 2.0 * inside, top - base, color=_CLOUD, linewidth=0.0, zorder=1.95)
+    axes.add_patch(gaps)
 
 
 def _say(

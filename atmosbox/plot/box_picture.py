@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
@@ -12,7 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
-from matplotlib.colors import LogNorm, Normalize, to_rgba
+from matplotlib.colors import Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
@@ -20,16 +21,78 @@ from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from atmosbox.file.molecules import Molecules
-from atmosbox.plot.camera import EDGES, FACES, Camera, corners
 from atmosbox.plot.caption import number
-from atmosbox.plot.disc_marker import put_discs, trails
-from atmosbox.plot.plane import colour_scale, discs
+from atmosbox.plot.discs import colour_scale, discs, put_discs, trails
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, OKABE_ITO, PALE, Theme
-from atmosbox.plot.tick import put_ticks
-from atmosbox.plot.unit import spelled
+from atmosbox.plot.units import spelled
 from atmosbox.theory.constants import DRY_AIR
 
-__all__ = ["BoxPicture", "PlanarPicture", "box_picture", "instant", "speed_bar"]
+_TURN, _TILT = math.radians(24.0), math.radians(16.0)  # angles of the camera to the side and upward
+_DISTANCE = 4.5  # of the camera from the middle of the box, in units of the longest side of the box
+
+Floats = NDArray[np.float64]
+
+FACES = (
+    (0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5),
+)  # fmt: skip
+"""Indices of the four corners of each wall: x low, x high, y low, y high, z low, z high."""
+EDGES = tuple((a, b) for a in range(8) for b in range(a + 1, 8) if bin(a ^ b).count("1") == 1)
+"""Indices of the two corners at the ends of each edge."""
+
+
+def corners(side: Floats) -> Floats:
+    """Return the eight corners of a box, (8, 3); z varies fastest from one corner to the next.
+
+    Examples
+    --------
+    >>> corners(np.array([2.0, 1.0, 1.0]))[4].tolist()
+    [2.0, 0.0, 0.0]
+    """
+    return np.array([[a, b, c] for a in (0.0, side[0]) for b in (0.0, side[1]) for c in (0.0, side[2])])
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera that looks at the middle of a box, a little from the side and from above.
+
+    Parameters
+    ----------
+    side : ndarray, (3,)
+        Side lengths of the largest box that the camera must see, in any unit of length.
+
+    Examples
+    --------
+    A nearer length is seen larger, and the wall y = 0 is in front:
+
+    >>> camera = Camera(np.ones(3))
+    >>> _, scale = camera.project(np.array([[0.5, 0.0, 0.5], [0.5, 1.0, 0.5]]))
+    >>> bool(scale[0] > scale[1])
+    True
+    """
+
+    side: Floats
+
+    def project(self, position: Floats) -> tuple[Floats, Floats]:
+        """Return positions in the picture (n, 2), and how large a unit of length is seen at each of them (n,)."""
+        place = np.asarray(position, dtype=np.float64) - self.side / 2
+        turn, tilt = (math.cos(_TURN), math.sin(_TURN)), (math.cos(_TILT), math.sin(_TILT))
+        right = place[:, 0] * turn[0] + place[:, 1] * turn[1]
+        away = place[:, 1] * turn[0] - place[:, 0] * turn[1]
+        up = place[:, 2] * tilt[0] + away * tilt[1]
+        depth = away * tilt[0] - place[:, 2] * tilt[1]
+        distance = _DISTANCE * float(self.side.max())
+        scale = distance / (distance + depth)
+        return np.column_stack((right, up)) * scale[:, None], scale
+
+    def behind(self, wall: int) -> bool:
+        """Tell whether a wall is behind the molecules, seen from the camera."""
+        return wall in (0, 3, 4)
+
+    def limits(self, side: Floats) -> tuple[Floats, Floats]:
+        """Return the lower left and the upper right corner of the picture of a box."""
+        seen, _ = self.project(corners(side))
+        return seen.min(axis=0), seen.max(axis=0)
+
 
 _MOST = 4000  # molecules that are drawn
 _UNITS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
@@ -319,17 +382,12 @@ def speed_bar(
         The theme: sizes of type, lines and markers.
     """
     axes = figure.add_axes(spot)
-    wide, high = spot[2] * figure.get_figwidth(), spot[3] * figure.get_figheight()
-    log = isinstance(picture.norm, LogNorm)
+    upright = spot[3] * figure.get_figheight() > spot[2] * figure.get_figwidth()
     scale = figure.colorbar(
-        ScalarMappable(picture.norm, picture.colours), cax=axes, extend="both" if log else "max",
-        orientation="vertical" if high > wide else "horizontal",
+        ScalarMappable(picture.norm, picture.colours), cax=axes, extend="max", ticks=MaxNLocator(4),
+        orientation="vertical" if upright else "horizontal",
     )  # fmt: skip
     counted = isinstance(picture, BoxPicture) and picture.held.neighbours is not None
     said = "neighbours" if counted else f"speed ({spelled(picture.speed_unit)})"
-    scale.set_label(said, labelpad=(0.5 if high > wide else 0.1) * look.text)
-    if log:
-        put_ticks(scale.long_axis, log=True, length=72.0 * max(wide, high), size=look.text)
-    else:
-        scale.locator = MaxNLocator(4)
+    scale.set_label(said, labelpad=(0.5 if upright else 0.1) * look.text)
     axes.tick_params(pad=0.15 * look.text)

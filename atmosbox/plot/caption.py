@@ -10,8 +10,8 @@ import xarray as xr
 
 from atmosbox.errors import FileError
 from atmosbox.plot.curve import read, unit_of
-from atmosbox.plot.plane import axis_names
-from atmosbox.plot.unit import convert, of_difference, power_of_ten, spelled
+from atmosbox.plot.discs import axis_names
+from atmosbox.plot.units import convert, of_difference, power_of_ten, spelled
 from atmosbox.scene.panels import Panel
 
 _COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")

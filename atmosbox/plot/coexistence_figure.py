@@ -6,61 +6,55 @@ must have against 1/T at its temperature. The lines have these slopes: nothing i
 
 from __future__ import annotations
 
-import json
 import math
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from atmosbox import theory
-from atmosbox.plot.caption import Reading, number
-from atmosbox.plot.number_card import put_numbers
-from atmosbox.plot.pen import Pen
-from atmosbox.plot.place import blank, put_footer, put_heading
-from atmosbox.plot.theme import DARK, DATA_COLOURS, REFERENCE_COLOURS, THEORY_COLOURS, Theme, style
-from atmosbox.plot.varied import Varied
+from atmosbox.plot.caption import Reading, number, stated
+from atmosbox.plot.layout import page
+from atmosbox.plot.run_figure import painter
+from atmosbox.plot.theme import Theme
+from atmosbox.scene.panels import Line, Panel
 from atmosbox.theory.constants import BOLTZMANN
-
-__all__ = ["draw_coexistence", "is_coexistence"]
 
 Floats = NDArray[np.float64]
 
-_BAR = 1e5
 _NEAR = 0.8
 """The critical temperature is estimated from temperatures above this share of the expected value."""
 _REACH = 0.45
 """Length of the line of a run to each side of its point, in mean distances between points."""
+_DENSE = ("liquid_density", "vapor_density")
 
 
-def is_coexistence(swept: Varied) -> bool:
-    """Tell whether a sweep has measured a vapour pressure and its slope at two or more temperatures.
+def is_coexistence(dataset: xr.Dataset, names: list[str]) -> bool:
+    """Tell whether a sweep over the temperature has measured a vapour pressure and its slope at two or more of them.
 
     Examples
     --------
-    >>> import xarray as xr
-    >>> is_coexistence(Varied(xr.Dataset(), "height", None, (), 1))
+    >>> is_coexistence(xr.Dataset(), [])
     False
     """
-    named = swept.across == "temperature" and swept.other is None and swept.numeric(swept.across)
-    return named and {"vapor_pressure", "clapeyron_slope"} <= set(swept.names) and bool(_known(swept).sum() > 1)
+    return {"vapor_pressure", "clapeyron_slope"} <= set(names) and bool(_known(dataset).sum() > 1)
 
 
-def _known(swept: Varied) -> NDArray[np.bool_]:
+def _known(data: xr.Dataset) -> NDArray[np.bool_]:
     """Tell at which temperatures both the vapour pressure and its slope are known."""
-    data = swept.dataset
     return np.asarray(np.isfinite(data.vapor_pressure.values) & np.isfinite(data.clapeyron_slope.values))
 
 
-def draw_coexistence(swept: Varied, look: Theme) -> Figure:
+def draw_coexistence(dataset: xr.Dataset, members: int, look: Theme) -> Figure:
     """Draw ln p against 1/T with the slope that each run has measured, and the densities of liquid and vapour.
 
     Parameters
     ----------
-    swept : Varied
+    dataset : xarray.Dataset
         The sweep, for which `is_coexistence` is true.
+    members : int
+        Number of runs at each temperature.
     look : Theme
         The theme: sizes of type, lines and markers.
 
@@ -70,37 +64,82 @@ def draw_coexistence(swept: Varied, look: Theme) -> Figure:
         The figure. Above the panels it gives the slope of ln p through all points beside the mean of the slopes L/ΔZ
         that the runs have measured, and, if enough temperatures are near it, the critical temperature.
     """
-    data = swept.dataset.isel(temperature=np.flatnonzero(_known(swept)))
-    parameters = json.loads(data.attrs["atmosbox_parameters"])
+    data = dataset.isel(temperature=np.flatnonzero(_known(dataset)))
+    parameters = stated(data, "atmosbox_parameters", dict)
     settings = parameters.get("settings", {})
     fluid = theory.SIMPLE_FLUIDS.get(str(settings.get("substance", "")))
     strength = float(settings.get("attraction", 1.0))
-    dense = {"liquid_density", "vapor_density"} <= set(swept.names)
-    with style(look):
-        drawing = blank(look.wide, look)
-        pen = Pen(drawing)
-        top = put_heading(pen, str(data.attrs.get("title", "")) if look.heading else "", look)
-        readings = [_slopes(data), *([_critical(data, fluid, strength)] if dense and fluid is not None else [])]
-        top += put_numbers(pen, [each for each in readings if each is not None], look, top)
-        if look.grows:
-            drawing.set_figheight(drawing.get_figheight() + top / 72)
-        axes = drawing.subplots(1, 2 if dense else 1, squeeze=False)[0]
-        _draw_pressure(axes[0], data, fluid, strength, look)
-        if dense:
-            _draw_densities(axes[1], data, fluid, strength, look)
-        runs = "one run" if swept.members == 1 else f"mean of {swept.members} runs"
-        small = f"atmosbox {parameters.get('version', data.attrs.get('product_version', ''))} · {parameters['scene']}"
-        put_footer(pen, f"{small} · each point {runs} · bars: ± 1 standard error", look)
-        engine = drawing.get_layout_engine()
-        assert engine is not None
-        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - top / 72 / drawing.get_figheight()))  # type: ignore[call-arg]
-    return drawing
+    readings, panels, flat = [_slopes(data)], [], _curves(data, fluid, strength)
+    pressure = [
+        Line("inverse", "p", "runs", error="p_se"),
+        Line("inverse_ends", "slope", "slope L/ΔZ of each run", "reference"),
+    ]
+    if fluid is not None:
+        pressure.append(Line("inverse_fine", "published", "published simulations", "theory"))
+        if strength == 1.0:
+            pressure.append(Line("inverse_fine", "real", f"real {fluid.name}", "environment"))
+    title = "Clausius and Clapeyron: ln p against 1/T"
+    panels.append(Panel("line", title, tuple(pressure), "1000 K / T", "vapour pressure", "1", "bar", y_scale="log"))
+    if set(_DENSE) <= set(data):
+        lines = [
+            Line(name, "kelvin", label, error=f"{name}_se")
+            for name, label in zip(_DENSE, ("liquid", "vapour"), strict=True)
+        ]
+        lines.append(Line("mean", "kelvin", "mean of both"))
+        if fluid is not None:
+            readings.append(_critical(data, fluid, strength))
+            lines.append(Line("width", "critical", "critical temperature", "theory"))
+        panels.append(Panel("profile", "Liquid and vapour become alike", tuple(lines), "density", "temperature"))
+    runs = "one run" if members == 1 else f"mean of {members} runs"
+    small = f"atmosbox {parameters.get('version', data.attrs.get('product_version', ''))} · {parameters['scene']}"
+    small += f" · each point {runs} · bars: ± 1 standard error"
+    heading = str(data.attrs.get("title", "")) if look.heading else ""
+    return page(
+        tuple(panels), look, flat, painter(flat, look), [each for each in readings if each is not None], small, heading
+    )
 
 
 def _error(data: xr.Dataset, name: str) -> Floats:
     """Return the standard errors of a headline, 0 where they are not known."""
     values = data[f"{name}_se"].values if f"{name}_se" in data else np.zeros(data.sizes["temperature"])
     return np.nan_to_num(np.asarray(values, np.float64))
+
+
+def _curves(data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float) -> xr.Dataset:
+    """Return the curves of both panels; the lines of the runs are parted by gaps."""
+    kelvin, pressure = data.temperature.values, data.vapor_pressure.values
+    half = _REACH * float(np.ptp(1.0 / kelvin)) / (len(kelvin) - 1)
+    ends = 1.0 / kelvin[:, None] + np.array([-half, half, np.nan])
+    slope = pressure[:, None] * np.exp(-data.clapeyron_slope.values[:, None] * (ends - 1.0 / kelvin[:, None]))
+    flat = xr.Dataset({"kelvin": ("run", kelvin, {"units": "K"}), "inverse": ("point", _parted(1e3 / kelvin))})
+    for name, values in (("p", pressure), ("p_se", _error(data, "vapor_pressure"))):
+        flat[name] = ("point", _parted(values), {"units": "Pa"})
+    flat["inverse_ends"], flat["slope"] = ("end", 1e3 * ends.ravel()), ("end", slope.ravel(), {"units": "Pa"})
+    if set(_DENSE) <= set(data):
+        for name in _DENSE:
+            for part, values in ((name, data[name].values), (f"{name}_se", _error(data, name))):
+                flat[part] = ("run", values, {"units": "kg m-3"})
+        flat["mean"] = 0.5 * (flat.liquid_density + flat.vapor_density).assign_attrs(units="kg m-3")
+        flat["width"] = ("side", [0.0, 1.05 * float(np.nanmax(flat.liquid_density))], {"units": "kg m-3"})
+    if fluid is not None:
+        room = 0.03 * np.ptp(kelvin)
+        fine = np.linspace(kelvin.min() - room, kelvin.max() + room, 100)
+        unit = strength * fluid.well_depth / fluid.well_diameter**3
+        model = theory.well_vapor_pressure(fine * BOLTZMANN / (strength * fluid.well_depth)) * unit
+        real = np.where(
+            fine < fluid.critical_temperature,
+            fluid.vapor_pressure(np.minimum(fine, fluid.critical_temperature)),
+            np.nan,
+        )
+        flat["inverse_fine"] = ("fine", 1e3 / fine)
+        flat["published"], flat["real"] = (("fine", each, {"units": "Pa"}) for each in (model, real))
+        flat["critical"] = ((), fluid.critical_temperature * strength, {"units": "K"})
+    return flat
+
+
+def _parted(values: Floats) -> Floats:
+    """Return values with gaps between them, so that no line joins the points."""
+    return np.column_stack([values, np.full(len(values), np.nan)]).ravel()
 
 
 def _slopes(data: xr.Dataset) -> Reading | None:
@@ -148,63 +187,3 @@ def _critical(data: xr.Dataset, fluid: theory.SimpleFluid, strength: float) -> R
         f"of this model {expected:.1f} K",
         "expected too high: the law of their difference holds only near it",
     )
-
-
-def _draw_pressure(
-    axes: Axes, data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float, look: Theme
-) -> None:
-    """Draw the vapour pressures with the slope of each run, published simulations, and the real substance."""
-    kelvin, pressure = data.temperature.values, data.vapor_pressure.values / _BAR
-    axes.errorbar(
-        1e3 / kelvin, pressure, _error(data, "vapor_pressure") / _BAR, fmt="o", color=DATA_COLOURS[0],
-        label="runs", zorder=4,
-    )  # fmt: skip
-    half = _REACH * float(np.ptp(1.0 / kelvin)) / (len(kelvin) - 1)
-    for k, each in enumerate(kelvin):
-        ends = 1.0 / each + np.array([-half, half])
-        line = pressure[k] * np.exp(-data.clapeyron_slope.values[k] * (ends - 1.0 / each))
-        axes.plot(
-            1e3 * ends, line, color=DATA_COLOURS[1], lw=1.6 * look.line, zorder=3,
-            label="slope L/ΔZ of each run" if k == 0 else None,
-        )  # fmt: skip
-    if fluid is not None:
-        room = 0.03 * np.ptp(kelvin)
-        fine = np.linspace(kelvin.min() - room, kelvin.max() + room, 100)
-        unit = strength * fluid.well_depth / fluid.well_diameter**3 / _BAR
-        model = theory.well_vapor_pressure(fine * BOLTZMANN / (strength * fluid.well_depth)) * unit
-        axes.plot(1e3 / fine, model, color=THEORY_COLOURS[0], ls="--", label="published simulations", zorder=2)
-        if strength == 1.0:
-            real = fluid.vapor_pressure(fine[fine < fluid.critical_temperature]) / _BAR
-            below = fine[fine < fluid.critical_temperature]
-            axes.plot(1e3 / below, real, color=REFERENCE_COLOURS[0], ls=":", label=f"real {fluid.name}", zorder=1)
-    axes.set_yscale("log")
-    axes.set_title("Clausius and Clapeyron: ln p against 1/T", loc="left", fontsize=look.title, weight="bold")
-    axes.set_xlabel("1000 K / T")
-    axes.set_ylabel("vapour pressure (bar)")
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter("{x:g}")
-    axes.tick_params(axis="y", which="minor", labelsize=look.small)
-    axes.grid(visible=True, which="both")
-    axes.legend(loc="lower left")
-
-
-def _draw_densities(
-    axes: Axes, data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float, look: Theme
-) -> None:
-    """Draw the densities of liquid and vapour, which approach each other towards the critical temperature."""
-    kelvin = data.temperature.values
-    for place, (name, label) in enumerate((("vapor_density", "vapour"), ("liquid_density", "liquid"))):
-        axes.errorbar(
-            data[name].values, kelvin, xerr=_error(data, name), fmt="os"[place], color=DATA_COLOURS[place], label=label
-        )
-    mean = 0.5 * (data.liquid_density.values + data.vapor_density.values)
-    axes.plot(mean, kelvin, "x", color=DARK, label="mean of both")
-    if fluid is not None:
-        critical = fluid.critical_temperature * strength
-        axes.axhline(critical, color=THEORY_COLOURS[0], ls="--", label="critical temperature")
-        axes.set_ylim(top=critical + 0.25 * max(critical - kelvin.min(), 1.0))
-    axes.set_title("Liquid and vapour become alike", loc="left", fontsize=look.title, weight="bold")
-    axes.set_xlabel("density (kg m⁻³)")
-    axes.set_ylabel("temperature (K)")
-    axes.grid(visible=True)
-    axes.legend(loc="upper center", ncols=2)

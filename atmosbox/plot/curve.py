@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.plot.unit import convert, of_difference
+from atmosbox.plot.units import convert, of_difference
 from atmosbox.scene.panels import Line, Panel
 
 WORST = 0.2

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 
 from atmosbox.file.output_path import named, write_whole
 from atmosbox.plot import sweep_figure, tradeoff_figure
-from atmosbox.plot.box_figure import figure_with_box
-from atmosbox.plot.layout import figure
+from atmosbox.plot.run_figure import figure, figure_with_box
 from atmosbox.plot.theme import find, style
 
 FORMATS = ("png", "svg", "pdf")
@@ -27,7 +26,6 @@ def save(
     theme: str = "notes",
     force: bool = False,
     with_box: bool = False,
-    all_panels: bool = False,
 ) -> Path:
     """Draw the figure of a run into a file.
 
@@ -45,9 +43,6 @@ def save(
         Whether a file of that name may be replaced.
     with_box : bool
         Whether the molecules are drawn above the panels, as `figure_with_box` does.
-    all_panels : bool
-        Whether a measured trade is drawn with all its panels, as `tradeoff_figure.figure` does; it has no effect on
-        other figures.
 
     Returns
     -------
@@ -75,19 +70,19 @@ def save(
     """
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    drawing = drawn(dataset, theme, with_box=with_box, all_panels=all_panels)
+    drawing = drawn(dataset, theme, with_box=with_box)
     title = str(dataset.attrs.get("title", "atmosbox"))
     parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
     write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
     return path
 
 
-def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False, all_panels: bool = False) -> Figure:
+def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False) -> Figure:
     """Return the figure of a run, with its box if ``with_box`` is true, or that of a measured trade or a sweep."""
     if with_box:
         return figure_with_box(dataset, theme)
     if "rung" in dataset.dims:
-        return tradeoff_figure.figure(dataset, theme, all_panels=all_panels)
+        return tradeoff_figure.figure(dataset, theme)
     return sweep_figure.figure(dataset, theme) if sweep_figure.is_sweep(dataset) else figure(dataset, theme)
 
 

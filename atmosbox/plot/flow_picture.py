@@ -9,12 +9,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from atmosbox.plot.pen import Pen
 from atmosbox.plot.theme import DARK, Theme
-from atmosbox.plot.unit import convert, spelled
+from atmosbox.plot.units import convert, spelled
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 __all__ = ["flow_height", "instants", "put_flow"]
@@ -60,24 +60,21 @@ def flow_height(dataset: xr.Dataset, look: Theme) -> float:
     return min(each, _TALLEST * wide if look.grows else _TALLEST_ON_SCREEN * high) + _AROUND * look.text
 
 
-def put_flow(pen: Pen, dataset: xr.Dataset, look: Theme, top: float) -> None:
+def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> None:
     """Draw the three pictures in a row, below a distance from the upper end of the page [pt].
 
     Parameters
     ----------
-    pen : Pen
-        The pen of the page.
     dataset : xarray.Dataset
-        The run; without the field ``upward_wind`` nothing is drawn.
+        The run, with the field ``upward_wind``.
     look : Theme
         The theme: sizes of type, lines and markers.
+    drawing : matplotlib.figure.Figure
+        The page.
     top : float
         The distance [pt].
     """
     room = flow_height(dataset, look)
-    if not room:
-        return
-    drawing = pen.figure
     wide, high = (72.0 * float(size) for size in drawing.get_size_inches())
     bounds = [dataset[f"{name}_bnds"].values / 1000.0 for name in ("distance", "height")]
     edges = [np.append(each[:, 0], each[-1, 1]) for each in bounds]

@@ -1,193 +1,491 @@
-"""The figure of a run: its panels, its title and its provenance on one page."""
+"""The layout of a page: headline numbers above panels in columns, each panel below its title, its note and its legend.
+
+Matplotlib's constrained layout finds the room for all parts. This file adds what matplotlib leaves to the user: lines
+of text that break at the end of a panel, as many columns of a legend as fit, titles of a row at the same height, and a
+page that grows with its text.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import re
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.gridspec import SubplotSpec
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.text import Annotation
+from matplotlib.transforms import ScaledTranslation, offset_copy
 
-from atmosbox.errors import FileError
-from atmosbox.plot.caption import footer, headlines
-from atmosbox.plot.curve import curve
-from atmosbox.plot.draw import Entry, draw
-from atmosbox.plot.flow_picture import flow_height
-from atmosbox.plot.place import Draw, page
-from atmosbox.plot.skewt import BACKGROUND, draw_skewt
-from atmosbox.plot.stroke import hollow_points
-from atmosbox.plot.theme import Theme, find
-from atmosbox.scene.panels import Line, Panel, from_json
+from atmosbox.plot.caption import Reading, axis_labels
+from atmosbox.plot.draw import Entry
+from atmosbox.plot.skewt import fit_skewt
+from atmosbox.plot.theme import DARK, FAINT, Theme, style
+from atmosbox.plot.tick import put_ticks
+from atmosbox.plot.units import labelled
+from atmosbox.scene.panels import Panel
+
+_FIXED = "\u00a0"  # a space that no line breaks at
 
 
-def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
-    """Draw the figure of a run.
+class Pen:
+    r"""Measures text and breaks it into lines of any width; matplotlib itself wraps at the edge of the figure only.
 
     Parameters
     ----------
+    figure : matplotlib.figure.Figure
+        The figure to write on; its canvas must be one of Agg.
+
+    Examples
+    --------
+    >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
+    >>> drawing = Figure()
+    >>> _ = FigureCanvasAgg(drawing)
+    >>> Pen(drawing).wrap("lapse rate = 9.8 ± 0.1 K km⁻¹ (of the parcel)", 90.0, 8.0).split("\n")
+    ['lapse rate', '= 9.8 ± 0.1 K km⁻¹ (of the parcel)']
+    """
+
+    def __init__(self, figure: Figure) -> None:
+        self.figure, self._known = figure, dict[tuple[str, float, str], float]()
+
+    def width(self, text: str, size: float, weight: str = "normal") -> float:
+        """Return the width of a line of text [pt]."""
+        asked = text, size, weight
+        if asked not in self._known:  # a page is laid out several times
+            renderer = self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+            font = FontProperties(size=size, weight=weight)
+            width, _, _ = renderer.get_text_width_height_descent(text, font, ismath=False)
+            self._known[asked] = float(width) * 72 / self.figure.dpi
+        return self._known[asked]
+
+    def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
+        """Return text broken into lines of at most a width [pt].
+
+        Lines do not break within short brackets, after a minus sign or within what follows "=". A single word that is
+        wider stays whole.
+        """
+        text = re.sub(r"\([^()]{1,24}\)|− |= .*", lambda part: part[0].replace(" ", _FIXED), text)
+        lines: list[str] = []
+        for word in text.split(" "):
+            longer = f"{lines[-1]} {word}" if lines else word
+            if lines and self.width(longer, size, weight) <= width:
+                lines[-1] = longer
+            else:
+                lines.append(word)
+        return "\n".join(lines).replace(_FIXED, " ")
+
+    def height(self, artist: Artist) -> float:
+        """Return the height of an artist as it is drawn [pt]."""
+        return float(artist.get_window_extent().height) * 72 / self.figure.dpi
+
+
+_LARGE = 1.6  # size of the number, in units of the title's size
+_NARROWEST = 14.0  # least width of a card, in units of the type size
+_LEADING = 1.2  # distance from line to line, in units of the type size
+
+
+def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float) -> float:
+    """Write numbers as cards in one row, or in several rows on a narrow page; return the height of all cards [pt].
+
+    Parameters
+    ----------
+    pen : Pen
+        The pen of the page.
+    readings : sequence of Reading
+        The headline numbers. Without any, nothing is drawn and the height is 0.
+    look : Theme
+        The theme: sizes of type, lines and markers.
+    below : float
+        Distance from the upper end of the page to the cards [pt].
+
+    Examples
+    --------
+    >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> drawing = Figure(figsize=(7.2, 4.5))
+    >>> _ = FigureCanvasAgg(drawing)
+    >>> cape = Reading("CAPE", "2270", "± 30 J/kg", "parcel theory 2290 J/kg", "difference −20 J/kg")
+    >>> 40.0 < put_numbers(Pen(drawing), [cape], THEMES["notes"], 0.0) < 60.0
+    True
+    """
+    figure = pen.figure
+    width = 72.0 * figure.get_figwidth() - look.text
+    columns = max(1, min(len(readings), int(width / (_NARROWEST * look.text))))
+    each, large, top = width / columns, _LARGE * look.title, below
+
+    def write(words: str, left: float, down: float, **look: Any) -> None:
+        # at this distance from the upper end of the page [pt], which it keeps if the page grows later
+        place = figure.transFigure + ScaledTranslation(left / 72.0, -down / 72.0, figure.dpi_scale_trans)
+        figure.text(0.0, 1.0, words, transform=place, **look).set_in_layout(False)
+
+    for first in range(0, len(readings), columns):
+        lowest = top
+        for place, reading in enumerate(readings[first : first + columns]):
+            left, base = 0.5 * look.text + place * each, top + 0.95 * large
+            write(reading.number, left, base, size=large, color=DARK, weight="bold", va="baseline")
+            after = left + pen.width(reading.number, large, "bold") + 0.4 * look.text
+            write(reading.error, after, base, color=DARK, va="baseline")
+            beside = ", ".join(part for part in (reading.theory, reading.difference) if part)
+            base += 0.25 * large
+            for words, colour in ((reading.label, DARK), (beside, FAINT)):
+                for line in pen.wrap(words, each - look.text, look.text).split("\n") if words else ():
+                    base += _LEADING * look.text
+                    write(line, left, base, color=colour, va="baseline")
+            lowest = max(lowest, base)
+        top = lowest + 0.6 * _LEADING * look.text
+    return top - below
+
+
+_TALL = ("profile", "discs", "skewt", "atmosphere")
+_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0, "atmosphere": 1.1}
+_TEXT_LINES = 6  # lines above the axes for which a page has room; it grows for more
+_ROUNDS = 3  # of layout and text: the text needs room, and the room decides where lines break
+# Length of the line samples in a legend, their distance from the text, and the gaps between axes, legend and note, all
+# in units of the type size.
+_HANDLE, _HANDLE_GAP, _GAP = 2.3, 0.5, 0.45
+
+Draw = Callable[[Figure, SubplotSpec, Panel, Axes | None], tuple[Axes, list[Entry]]]
+"""Draws a panel at its place and returns its axes and legend entries; it shares the abscissa of the axes above, if any.
+"""
+
+
+class Plate(NamedTuple):
+    """A panel on the page."""
+
+    axes: Axes
+    """Its axes, with the curves drawn."""
+    panel: Panel
+    """The panel that they show."""
+    entries: list[Entry]
+    """The entries of its legend."""
+    note: Annotation
+    """The text below its title, in which `settle` writes the panel's note."""
+    labels: tuple[tuple[str, str], tuple[str, str]]
+    """Label and unit of the two axes; the label of an abscissa that the panel below shows is empty."""
+    row: int
+    column: int
+
+
+_SMALLEST = 0.6  # least size of a label that is too long for its axis, in units of the type size
+
+
+def page(
+    panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[Reading],
+    small: str, heading: str, height: float = 0.0, put: Callable[[Figure, float], None] | None = None,
+) -> Figure:  # fmt: skip
+    """Return a page of panels, with a heading and numbers in large type above them and small type below them.
+
+    Parameters
+    ----------
+    panels : tuple of Panel
+        What to draw.
+    look : Theme
+        The theme: sizes of type, lines and markers.
     dataset : xarray.Dataset
-        The run as atmosbox returns or saves it, in SI units; it is not changed. Its attribute
-        ``atmosbox_panels`` lists the panels to draw.
-    theme : {"notes", "slides"}
-        A figure for a page, or one for a screen of 16:9 with large type.
+        The run, whose variables give the labels of the axes.
+    draw : callable
+        The function that draws a panel, see `Draw`.
+    readings : sequence of Reading
+        The numbers above the panels.
+    small, heading : str
+        The text of the footer and of the heading; an empty heading takes no space.
+    height : float
+        Height that pictures above the panels take [pt].
+    put : callable, optional
+        The function that draws these pictures, given the figure and their distance from its upper end [pt].
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.plot.run_figure import painter
+    >>> from atmosbox.plot.theme import THEMES
+    >>> from atmosbox.scene.panels import Line
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
+    >>> drawing = page((panel,), look, dataset, painter(dataset, look), [], "atmosbox", "")
+    >>> [text.get_text() for text in drawing.texts], drawing.axes[0].get_title("left")
+    (['atmosbox'], 'Pressure')
+    """
+    with style(look):
+        drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
+        pen = Pen(drawing)
+        top = put_heading(pen, heading, look)
+        above = top + put_numbers(pen, readings, look, top)
+        top = above + height
+        if look.grows:
+            drawing.set_figheight(drawing.get_figheight() + top / 72)
+        plates = put_panels(drawing, panels, look, dataset, draw) if panels else []
+        put_footer(pen, small, look)
+        settle(pen, plates, look, top)
+        if put is not None:
+            put(drawing, above)
+    return drawing
+
+
+def blank(size: tuple[float, float], look: Theme) -> Figure:
+    """Return an empty page whose panels make room for the text around them.
+
+    Parameters
+    ----------
+    size : tuple of float
+        Width and height [inch].
+    look : Theme
+        The theme: the size of the type sets the margins.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
+    >>> drawing.get_size_inches().tolist()
+    [4.0, 3.0]
+    """
+    space = look.text / 144  # inch
+    engine = ConstrainedLayoutEngine(w_pad=space, h_pad=space / 1.5, wspace=0.02, hspace=0.03)
+    drawing = Figure(figsize=size, layout=engine)
+    FigureCanvasAgg(drawing)
+    return drawing
+
+
+def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw) -> list[Plate]:
+    """Draw every panel at its place on the page.
+
+    Parameters
+    ----------
+    drawing : matplotlib.figure.Figure
+        The page.
+    panels : tuple of Panel
+        What to draw.
+    look : Theme
+        The theme: sizes of type, lines and markers.
+    dataset : xarray.Dataset
+        The run, whose variables give the labels of the axes.
+    draw : callable
+        The function that draws a panel, see `Draw`.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure. It opens no window; a notebook shows it.
-
-    Raises
-    ------
-    FileError
-        If the dataset carries no panels or lacks a variable that they show.
-    SettingError
-        If there is no such theme.
+    list of Plate
+        The panels on the page; `settle` writes the text around them.
 
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.scene.panels import Line, to_json
-    >>> air = Line("elapsed_time", "air_temperature", "air")
-    >>> panel = Panel("line", "Temperature", (air,), "time", "temperature", y_unit="degC")
-    >>> dataset = xr.Dataset(
-    ...     {"air_temperature": ("elapsed_time", [288.0, 290.0], {"units": "K"})},
-    ...     coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
-    ...     attrs={"atmosbox_panels": to_json([panel])},
-    ... )
-    >>> axes = figure(dataset).axes[0]
-    >>> axes.get_xlabel(), axes.get_ylabel()
-    ('time (ns)', 'temperature (°C)')
+    >>> from atmosbox.plot.run_figure import painter
+    >>> from atmosbox.plot.theme import THEMES
+    >>> from atmosbox.scene.panels import Line
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
+    >>> page = blank((4.0, 3.0), look)
+    >>> plates = put_panels(page, (panel, panel), look, dataset, painter(dataset, look))
+    >>> [(plate.row, plate.column) for plate in plates]
+    [(0, 0), (0, 1)]
     """
-    look = find(theme)
-    panels = panels_of(dataset)
-    heading = str(dataset.attrs.get("title", "")) if look.heading else ""
-    small = footer(dataset) + explanation(dataset, panels)
-    readings = [reading for each in headlines(dataset, panels) for reading in each]
-    if flow_height(dataset, look) and not look.grows:  # a slide has no room for more below the pictures of the wind
-        panels, readings = panels[:2], []
-    return page(panels, look, dataset, painter(dataset, look), readings, small, heading)
+    columns = _columns(panels)
+    widths = [_WIDTHS[panels[column[0]].kind] for column in columns]
+    grid = drawing.add_gridspec(max(map(len, columns)), len(columns), width_ratios=widths)
+    plates: list[Plate] = []
+    for place, column in enumerate(columns):
+        shared = len(column) > 1 and _same_abscissa(*(panels[index] for index in column))
+        for row, index in enumerate(column):
+            panel, spot = panels[index], grid[row if len(column) > 1 else slice(None), place]
+            axes, entries = draw(drawing, spot, panel, plates[-1].axes if shared and row else None)
+            x, y = axis_labels(dataset, panel)
+            labels = (("", x[1]) if shared and not row else x, y)
+            note = axes.annotate(
+                "", (0.0, 1.0), (0.0, 0.0), xycoords="axes fraction", textcoords="offset points", va="top",
+                size=look.text, linespacing=1.2, annotation_clip=False,
+            )  # fmt: skip
+            plates.append(Plate(axes, panel, entries, note, labels, row, place))
+        drawing.align_ylabels([plate.axes for plate in plates if plate.column == place])
+    return plates
 
 
-def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = None) -> Draw:
-    """Return the function that draws a panel of a run at its place.
+def put_footer(pen: Pen, small: str, look: Theme) -> None:
+    """Write the small type below all panels.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
+    pen : Pen
+        The pen of the page.
+    small : str
+        The text.
     look : Theme
         The theme: sizes of type, lines and markers.
-    only : tuple of Line, optional
-        The lines to draw; by default all.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
+    >>> put_footer(Pen(drawing), "atmosbox", THEMES["notes"])
+    >>> [text.get_text() for text in drawing.texts]
+    ['atmosbox']
+    """
+    width = 72 * pen.figure.get_figwidth()
+    # Type that is fitted to the pixels of a screen may be narrower than in print.
+    small = pen.wrap(small, 0.98 * (width - look.text), look.small)
+    pen.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
+
+
+def put_heading(pen: Pen, heading: str, look: Theme) -> float:
+    """Write a heading above all panels; return the height that it takes [pt].
+
+    Parameters
+    ----------
+    pen : Pen
+        The pen of the page.
+    heading : str
+        The text; an empty one takes no space.
+    look : Theme
+        The theme: sizes of type, lines and markers.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> put_heading(Pen(blank((4.0, 3.0), THEMES["notes"])), "", THEMES["notes"])
+    0.0
+    """
+    if not heading:
+        return 0.0
+    width, height = (72 * float(size) for size in pen.figure.get_size_inches())
+    size = 1.3 * look.title
+    heading = pen.wrap(heading, width - look.text, size, "bold")
+    place = (0.5 * look.text / width, 1.0 - 0.5 * look.text / height)
+    text = pen.figure.text(*place, heading, fontsize=size, weight="bold", va="top")
+    text.set_in_layout(False)
+    return pen.height(text) + look.text
+
+
+def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None:
+    """Write titles, notes, legends and labels around the panels, in lines that are as long as a panel is wide.
+
+    Parameters
+    ----------
+    pen : Pen
+        The pen of the page.
+    plates : list of Plate
+        Its panels, from `put_panels`.
+    look : Theme
+        The theme: sizes of type and lines. If it allows the page to grow, the page becomes higher for much text.
+    top : float
+        Height above all panels that is already in use [pt].
 
     Examples
     --------
     >>> import xarray as xr
+    >>> from atmosbox.plot.run_figure import painter
+    >>> from atmosbox.plot.theme import THEMES
+    >>> from atmosbox.scene.panels import Line
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> drawing, panel = Figure(), Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> axes, _ = painter(dataset, find("notes"))(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
-    >>> axes.lines[0].get_xdata().tolist()
-    [1000.0, 900.0]
+    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),), y_label="height"), THEMES["notes"]
+    >>> drawing = blank((4.0, 3.0), look)
+    >>> settle(Pen(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look)), look)
+    >>> drawing.axes[0].get_ylabel()
+    'height'
     """
-
-    def draw_panel(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        if panel.kind == "skewt":
-            return draw_skewt(drawing, spot, panel, dataset, look, only)
-        axes = drawing.add_subplot(spot, sharex=above)
-        return axes, draw(axes, panel, dataset, look, only)
-
-    return draw_panel
-
-
-def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
-    """Return the text of the footer that explains error bars, hollow points and the background of a skew-T.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-    panels : tuple of Panel
-        The panels that are drawn.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> explanation(xr.Dataset(), (Panel("discs", "The box"),))
-    ''
-    """
-    has_errors = any(line.error for panel in panels for line in panel.lines)
-    has_hollow = any(
-        hollow_points(curve(dataset, panel, line)).any()
-        for panel in panels
-        for line in panel.lines
-        if line.role == "data" and panel.kind != "histogram"
-    )
-    along = " and ".join(dict.fromkeys(panel.x_label or "x" for panel in panels if panel.averages))
-    small = f" · against {along}: averages of frames, ± 1 standard deviation of single frames" if along else ""
-    if has_errors:
-        small += f" · {'other ' if along else ''}bars and bands: ± 1 standard error"
-        small += ", hollow: not known" if has_hollow else ""
-    return small + (f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else "")
+    drawing = pen.figure
+    engine, height = drawing.get_layout_engine(), drawing.get_figheight()
+    assert engine is not None
+    for _ in range(_ROUNDS):
+        if top:
+            engine.set(rect=(0.0, 0.0, 1.0, 1.0 - top / 72 / drawing.get_figheight()))  # type: ignore[call-arg]
+        engine.execute(drawing)
+        for plate in plates:
+            plate.axes.apply_aspect()
+            _write_labels(pen, plate, look)
+        # The texts of a column have the same left edge, and the titles of a row have the same height.
+        ink = [plate.axes.yaxis.get_tightbbox().x0 for plate in plates]  # type: ignore[union-attr]
+        edge = {p.column: min(x for x, o in zip(ink, plates, strict=True) if o.column == p.column) for p in plates}
+        heights = [_write_legend(pen, plate, edge[plate.column], look) for plate in plates]
+        tops = {p.row: max(h for h, o in zip(heights, plates, strict=True) if o.row == p.row) for p in plates}
+        for plate in plates:
+            _write_title(pen, plate, edge[plate.column], tops[plate.row], look)
+        if look.grows:
+            drawing.set_figheight(height + max(0.0, sum(tops.values()) - _TEXT_LINES * look.text) / 72)
+    engine.execute(drawing)
 
 
-def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
-    """Return the panels that a run lists, without the theory curves of headlines that it did not measure.
-
-    Of a run that was stopped, only panels and curves are returned for which it has measured enough.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Raises
-    ------
-    FileError
-        If the dataset lists no panels, its list cannot be read, or the run was stopped too early for all of them.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import to_json
-    >>> [panel.title for panel in panels_of(xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])}))]
-    ['A box']
-    """
-    if "atmosbox_panels" not in dataset.attrs:
-        raise FileError("The file does not say what its figure shows: it was not written by atmosbox run.")
-    try:
-        panels = from_json(dataset.attrs["atmosbox_panels"])
-    except ValueError as error:
-        raise FileError(f"The file does not say what its figure shows, because {error}") from error
-    if not panels:
-        raise FileError("The file has no figure: its scene names no panels.")
-    if dataset.attrs.get("atmosbox_status", "complete") != "complete":
-        panels = tuple(begun for panel in panels if (begun := _begun(dataset, panel)) is not None)
-        if not panels:
-            raise FileError("The run was stopped too early for a figure: let it go on with atmosbox run --resume.")
-    return tuple(replace(panel, lines=_found(dataset, panel)) for panel in panels)
+def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
+    """Write ticks and labels for the present size of the axes."""
+    axes, panel, size = plate.axes, plate.panel, look.text
+    extent, point = axes.get_window_extent(), pen.figure.dpi / 72
+    width, height = extent.width / point, extent.height / point
+    (x_label, x_unit), (y_label, y_unit) = plate.labels
+    power = 0
+    if panel.kind == "skewt":
+        fit_skewt(axes, width, height, size)
+    elif panel.kind != "atmosphere":  # its horizontal axis has no scale
+        log = panel.x_scale == "log"
+        power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
+    if x_label:
+        axes.set_xlabel(pen.wrap(labelled(x_label, x_unit, power) if x_unit else x_label, width, size))
+    else:
+        axes.tick_params(axis="x", labelbottom=False)
+    log = panel.y_scale == "log"
+    power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
+    # The label may extend beyond both ends of the axis into the gaps that are there anyhow. A line that is still too
+    # long is written smaller, so that it does not run into the legend.
+    room = height + 0.8 * size
+    label = pen.wrap(labelled(y_label, y_unit, power), room, size)
+    longest = max(pen.width(line, size) for line in label.split("\n")) if label else room
+    axes.set_ylabel(label, size=size * min(1.0, max(room / max(longest, 1e-9), _SMALLEST)))
 
 
-def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
-    """Return a panel of a run that was stopped, with the curves that it has; None if none of them is measured."""
+def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
+    """Put the legend above the axes and break the note into lines; return the height of both together [pt]."""
+    axes, size = plate.axes, look.text
+    extent, point = axes.get_window_extent(), pen.figure.dpi / 72
+    room, height = (extent.x1 - edge) / point, _GAP * size
+    if len(plate.entries) > 1 or any(line.role != "data" for line in plate.panel.lines):
+        place = offset_copy(axes.transAxes, pen.figure, (edge - extent.x0) / point, height, units="points")
+        labels = [pen.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in plate.entries]
+        for number in range(len(labels), 0, -1):
+            legend = axes.legend(
+                [artists if len(artists) > 1 else artists[0] for artists, _ in plate.entries], labels,
+                loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=number, borderpad=0.0,
+                borderaxespad=0.0, handlelength=_HANDLE, handletextpad=_HANDLE_GAP, columnspacing=1.1,
+                labelspacing=0.25,
+            )  # fmt: skip
+            if legend.get_window_extent().width <= room * point:
+                break
+        for line in legend.get_lines():
+            line.set_linewidth(max(line.get_linewidth(), look.line))
+        height += pen.height(legend) + _GAP * size
+    plate.note.set_text(pen.wrap(plate.panel.note, room, size))
+    return height + (pen.height(plate.note) + _GAP * size if plate.panel.note else 0.0)
 
-    def held(names: tuple[str, ...]) -> bool:
-        return all(name.partition("[")[0] in dataset.variables for name in names)
 
-    if not panel.lines:
-        return panel if held(panel.variables) else None
-    lines = tuple(line for line in panel.lines if held(line.variables))
-    return replace(panel, lines=lines) if any(line.role == "data" for line in lines) else None
-
-
-def _known(dataset: xr.Dataset, name: str) -> bool:
-    """Tell whether a variable has a value, or is not in the file, which `draw` tells."""
-    return name not in dataset or bool(dataset[name].notnull().any())
+def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme) -> None:
+    """Write the title at a height above the axes [pt], and below it the note."""
+    extent, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
+    title = pen.wrap(plate.panel.title, (extent.x1 - edge) / point, look.title, "bold")
+    left = (edge - extent.x0) / extent.width
+    # With y given, matplotlib does not look for ticks that the title would have to avoid.
+    plate.axes.set_title(title, loc="left", x=left, y=1.0, pad=height, fontsize=look.title, weight="bold")
+    plate.note.set_position(((edge - extent.x0) / point, height - _GAP * look.text))
 
 
-def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
-    """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
-    missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
-    # nor theory that is known nowhere, such as the growth of rolls of discs
-    missing |= {line.y for line in panel.lines if line.role == "theory" and not _known(dataset, line.y)}
-    return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))
+def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
+    """Return the indices of the panels of each column: tall panels alone, other graphs in pairs."""
+    columns: list[list[int]] = []
+    for index, panel in enumerate(panels):
+        paired = bool(columns) and len(columns[-1]) == 1 and panels[columns[-1][0]].kind not in _TALL
+        if paired and panel.kind not in _TALL:
+            columns[-1].append(index)
+        else:
+            columns.append([index])
+    return columns
+
+
+def _same_abscissa(upper: Panel, lower: Panel) -> bool:
+    """Tell whether two panels, one above the other, can share a horizontal axis."""
+    if upper.kind != "line" or lower.kind != "line":
+        return False
+    names = {line.x for panel in (upper, lower) for line in panel.lines}
+    axes = {(panel.x_label, panel.x_unit, panel.x_scale, panel.x_invert) for panel in (upper, lower)}
+    return len(names) == len(axes) == 1

@@ -1,9 +1,10 @@
-"""A parcel in its environment on the diagram that forecasters use: the skew-T of MetPy."""
+"""A parcel in its environment on the diagram that forecasters use: the skew-T of MetPy, with CAPE and CIN shaded."""
 
 from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,16 +13,206 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
+from matplotlib.patches import Patch
+from matplotlib.text import Annotation
+from matplotlib.ticker import FixedFormatter, FixedLocator
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.plot.curve import read
+from atmosbox.plot.curve import Curve, curve, read
 from atmosbox.plot.draw import Entry, draw_lines
-from atmosbox.plot.energy import shade_energy
-from atmosbox.plot.theme import PALE, Theme
-from atmosbox.plot.tilt import ROTATION, put_levels
-from atmosbox.plot.unit import convert
+from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, DARK, FAINT, PALE, Theme
+from atmosbox.plot.units import convert
 from atmosbox.scene.panels import Line, Panel
+
+ROTATION = 30.0  # angle of the isotherms from the vertical [degree], as in MetPy
+
+# On the page, a decade of pressure is at least as long as this many kelvin: otherwise the adiabats are too flat where
+# the axes are wide.
+_KELVINS_PER_DECADE = 60.0
+# Least distance of the curves from the sides, in widths of the axes; least and greatest width of a diagram [K].
+_MARGIN = 0.06
+_LEAST_WIDTH, _MOST_WIDTH = 40.0, 400.0
+_LEVEL = "level"  # marks the names of levels among the texts of the axes
+
+
+def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
+    """Choose the range of temperatures of a skew-T for its size, and move the names of its levels apart.
+
+    Isotherms are inclined on the page. How far a curve reaches to the left and to the right therefore depends on the
+    height and the width of the axes.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes, from `skewt.draw_skewt`.
+    width, height : float
+        Size of the axes [pt].
+    size : float
+        Size of the type [pt].
+
+    Examples
+    --------
+    Because isotherms are inclined, a curve that cools by 80 K needs less than 80 K of the width of the page:
+
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
+    >>> _ = axes.plot([20.0, -60.0], [1000.0, 100.0])
+    >>> fit_skewt(axes, 200.0, 200.0, 8.0)
+    >>> [round(float(limit)) for limit in axes.get_xlim()]
+    [-33, 27]
+    """
+    bottom, top = axes.get_ylim()
+    left, across = _temperatures(axes, bottom, top, height / width)
+    axes.set_xlim(left, left + across)
+    step = next(step for step in (5.0, 10.0, 20.0, 50.0, 100.0) if step * width / across >= 3.2 * size)
+    coldest = left - across * math.tan(math.radians(ROTATION)) * height / width
+    isotherms = step * np.arange(math.floor(coldest / step), math.ceil((left + across) / step) + 1)
+    numbers = [f"{t:.0f}".replace("-", "−") if left <= t <= left + across else "" for t in isotherms]
+    axes.xaxis.set_major_locator(FixedLocator(list(isotherms)))
+    axes.xaxis.set_major_formatter(FixedFormatter(numbers))
+    names = [text for text in axes.texts if isinstance(text, Annotation) and text.get_gid() == _LEVEL]
+    wanted = [height * math.log(bottom / text.xy[1]) / math.log(bottom / top) for text in names]
+    for text, place, moved in zip(names, wanted, _apart(wanted, 1.15 * size, height), strict=True):
+        text.set_position((0.8 * size, moved - place))
+
+
+def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[float, float]:
+    """Return the lowest temperature at the bottom of the axes [degC], and the range of temperatures there [K].
+
+    ``slope`` is the height of the axes divided by their width. Each point of a curve is moved to the right by its
+    height times the tangent of the rotation. Measured in kelvin, that shift grows with the range of temperatures.
+    """
+    points = np.concatenate([np.zeros((0, 2)), *(np.asarray(line.get_xydata()) for line in axes.lines)])
+    points = points[np.isfinite(points).all(axis=1)]
+    temperature, up = points[:, 0], np.log(bottom / points[:, 1]) / math.log(bottom / top)
+    lean = math.tan(math.radians(ROTATION)) * slope
+    least = min(max(_LEAST_WIDTH, _KELVINS_PER_DECADE * math.log10(bottom / top) / slope), _MOST_WIDTH)
+    if not points.size:
+        return -least / 2, least
+    widths = np.arange(least, _MOST_WIDTH + 1.0)
+    fitting = (each for each in widths if np.ptp(temperature / each + lean * up) <= 1.0 - 2 * _MARGIN)
+    across = float(next(fitting, widths[-1]))
+    place = temperature + across * lean * up
+    return float(place.min() + place.max() - across) / 2, across
+
+
+def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
+    """Draw a horizontal line across a skew-T for each level, with its name to the right of the diagram.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes, with their pressures set.
+    levels : dict of str to float
+        Pressure of each level by its name [hPa]; levels outside the diagram are left out.
+    theme : Theme
+        The theme: sizes of type, lines and markers.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
+    >>> put_levels(axes, {"EL": 200.0, "LCL": 900.0, "LFC": 50.0}, THEMES["notes"])
+    >>> [text.get_text() for text in axes.texts]
+    ['LCL', 'EL']
+    """
+    bottom, top = axes.get_ylim()
+    line: dict[str, Any] = {"color": FAINT, "linewidth": 0.06 * theme.text}
+    for name, pressure in sorted(levels.items(), key=lambda level: -level[1]):
+        if top <= pressure <= bottom:
+            axes.hlines(pressure, 0.0, 1.0, transform=axes.get_yaxis_transform(), zorder=0.9, **line)
+            axes.annotate(
+                name, (1.0, pressure), (0.8 * theme.text, 0.0), xycoords=("axes fraction", "data"),
+                textcoords="offset points", va="center", size=theme.text, color=DARK, annotation_clip=False, gid=_LEVEL,
+                arrowprops={"arrowstyle": "-", "shrinkA": 0.0, "shrinkB": 0.0, "relpos": (0.0, 0.5), **line},
+            )  # fmt: skip
+
+
+def _apart(places: list[float], gap: float, height: float) -> list[float]:
+    """Return ascending positions, moved until they are at least a gap apart and none is above the height."""
+    moved = list(places)
+    for i in range(1, len(moved)):
+        moved[i] = max(moved[i], moved[i - 1] + gap)
+    ceiling = height
+    for i in reversed(range(len(moved))):
+        moved[i] = min(moved[i], ceiling)
+        ceiling = moved[i] - gap
+    return moved
+
+
+_ROUNDING = 1.0 + 1e-12  # allows for the rounding error of a pressure computed as exp(log(p))
+
+Floats = NDArray[np.float64]
+
+
+def shade_energy(
+    skewed: Any, panel: Panel, dataset: xr.Dataset, marks: Mapping[str, float], order: float
+) -> list[Entry]:
+    """Shade CAPE and CIN, and return their legend entries; without a level of free convection there are none.
+
+    Parameters
+    ----------
+    skewed : metpy.plots.SkewT
+        The diagram.
+    panel : Panel
+        The panel: its first line of role ``data`` is the parcel, its first line of role ``environment`` is the
+        environment.
+    dataset : xarray.Dataset
+        The run.
+    marks : mapping of str to float
+        Pressures of the levels LFC and EL [hPa].
+    order : float
+        The drawing order of the areas (matplotlib's ``zorder``).
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.scene.panels import Line, Panel
+    >>> panel = Panel("skewt", "A parcel", (Line("temperature", "pressure", "parcel"),), y_unit="hPa", y_scale="log")
+    >>> shade_energy(None, panel, xr.Dataset(), {}, 1.0)
+    []
+    """
+    measured, environment = (
+        next((line for line in panel.lines if line.role == role), None) for role in ("data", "environment")
+    )
+    if "LFC" not in marks or measured is None or environment is None:
+        return []
+    lfc, el = marks["LFC"], marks.get("EL", 0.0)
+    curves = [curve(dataset, panel, line) for line in (measured, environment)]
+    pressure, parcel, around = _together(curves, [lfc, el] if el else [lfc])
+    free, below = (pressure <= lfc * _ROUNDING) & (pressure * _ROUNDING >= el), pressure * _ROUNDING >= lfc
+    warmer = parcel - around
+    entries: list[Entry] = []
+    for name, part, sign, shade in (
+        ("CAPE", free, 1.0, skewed.shade_cape),
+        ("CIN", below, -1.0, skewed.shade_cin),
+    ):
+        if not (sign * warmer[part] > 0.0).any():
+            continue
+        look: dict[str, Any] = {"facecolor": AREA_COLOURS[name], "hatch": AREA_HATCHES[name]}
+        look |= {"edgecolor": FAINT, "linewidth": 0.0, "alpha": 0.7}
+        shade(pressure[part], around[part], parcel[part], zorder=order, **look)
+        entries.append(((Patch(**look),), name))
+    return entries
+
+
+def _together(curves: list[Curve], ends: list[float]) -> tuple[Floats, Floats, Floats]:
+    """Return pressures from the ground up, which include the ends of the areas, and both curves' temperatures there."""
+    columns = []
+    for temperature, pressure, _ in curves:
+        known = np.isfinite(temperature) & np.isfinite(pressure)
+        order = np.argsort(-pressure[known], kind="stable")
+        columns.append((-np.log(pressure[known][order]), temperature[known][order]))
+    if not all(height.size for height, _ in columns):
+        return np.zeros(0), np.zeros(0), np.zeros(0)
+    low, high = max(height[0] for height, _ in columns), min(height[-1] for height, _ in columns)
+    heights = np.unique(np.concatenate([*(height for height, _ in columns), -np.log(ends)]))
+    heights = heights[(heights >= low) & (heights <= high)]
+    temperatures = [np.interp(heights, *each) for each in columns]
+    return np.exp(-heights), temperatures[0], temperatures[1]
+
 
 BACKGROUND = "grey: dry adiabats (solid), moist adiabats (dashed), mixing ratios (dotted)"
 
@@ -38,8 +229,6 @@ _MOIST = np.arange(-30.0, 41.0, 10.0)
 _MIXING = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 _MIXING_TOP = 400.0  # upper end of the lines of mixing ratio [hPa]
 _HIGHEST_MOIST = 50.0  # upper end of the moist adiabats [hPa]
-
-Floats = NDArray[np.float64]
 
 
 def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:

@@ -2,37 +2,79 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from atmosbox.plot.caption import number
+from atmosbox.errors import FileError
+from atmosbox.plot.caption import number, stated
 from atmosbox.plot.coexistence_figure import draw_coexistence, is_coexistence
-from atmosbox.plot.field import draw_fields
-from atmosbox.plot.layout import figure as figure_of_panels
-from atmosbox.plot.theme import find, style
-from atmosbox.plot.unit import convert, of_difference, spelled
-from atmosbox.plot.varied import Varied
+from atmosbox.plot.run_figure import figure as figure_of_panels
+from atmosbox.plot.theme import DATA_COLOURS, find, style
+from atmosbox.plot.units import convert, of_difference, spelled
 from atmosbox.scene.panels import Line, Panel, to_json
 
-__all__ = ["MOST_PANELS", "figure", "is_sweep"]
-
 MOST_PANELS = 4
-_MOST_CURVES = 3
-"""A second setting with at most this many values is drawn as one curve for each value, with more as a field."""
+_MOST_CURVES = len(DATA_COLOURS)
+"""Of a second setting with more values, only as many are drawn, at even steps."""
+_MOST_NAMED = 3
+"""Theory curves of more than this number are not told apart in the legend: each runs through its points."""
 _ALIKE = 1e-3
 """Theory curves that differ by no more than this share of their range are drawn once."""
-
 _WIDE = 100.0
 """Positive numbers whose largest is more than this many times the smallest are shown on a logarithmic axis."""
+_UNEVEN = 4.0
+"""An axis is logarithmic if both ratios exceed this: largest step to smallest step, last value to first value."""
 _LONGEST = 60
 """Greatest length of a label of an axis [characters]."""
 
 Floats = NDArray[np.float64]
+
+
+class _Setting(NamedTuple):
+    """A setting that was varied."""
+
+    dim: str
+    name: str
+    label: str
+    numeric: bool
+    values: Floats
+    """Its values in the unit of the file; words are at 0, 1, 2 and so on."""
+    unit: str
+    shown: str
+    words: list[str]
+    """Its values as text with their unit, for a legend."""
+
+    @property
+    def geometric(self) -> bool:
+        """Whether it needs a logarithmic axis: positive values with very uneven steps over a wide range."""
+        if not self.numeric or len(self.values) < 3 or not self.values[0] > 0.0:
+            return False
+        steps = np.diff(self.values)
+        return bool(steps.max() > _UNEVEN * steps.min() and self.values[-1] > _UNEVEN * self.values[0])
+
+
+def _setting(dataset: xr.Dataset, dim: str) -> _Setting:
+    """Return a setting; the unit of the file is shown if it names no other into which it can be converted."""
+    found, name = dataset[dim], dim.removesuffix("_setting").replace("_", " ")
+    if found.dtype.kind not in "fi":
+        words = [str(word) for word in np.char.decode(found.values.astype("S"))]
+        return _Setting(dim, name, name, False, np.arange(len(words), dtype=float), "1", "1", words)
+    unit = str(found.attrs.get("units", "1"))
+    shown = str(found.attrs.get("display_units", "")) or unit
+    try:
+        values = convert(found.values, unit, shown, name=dim)
+    except FileError:
+        shown, values = unit, np.asarray(found.values, dtype=np.float64)
+    with_unit = "" if shown == "1" else f" {spelled(shown)}"
+    words = [f"{value:.6g}".replace("-", "−") + with_unit for value in values]
+    label = str(found.attrs.get("long_name", ""))
+    label = label if 0 < len(label) <= _LONGEST else name
+    return _Setting(dim, name, label, True, np.asarray(found.values, dtype=np.float64), unit, shown, words)
 
 
 def is_sweep(dataset: xr.Dataset) -> bool:
@@ -40,23 +82,21 @@ def is_sweep(dataset: xr.Dataset) -> bool:
 
     Examples
     --------
-    >>> import xarray as xr
     >>> is_sweep(xr.Dataset())
     False
     """
     try:
-        return "sweep" in json.loads(dataset.attrs.get("atmosbox_parameters", "{}"))
-    except (TypeError, ValueError):
+        return "sweep" in stated(dataset, "atmosbox_parameters", dict)
+    except FileError:
         return False
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """Draw the headlines of a sweep against the settings that were varied.
 
-    One setting is on the horizontal axis. A second one gives a curve for each of its values or, if it has more than
-    three, the vertical axis of a field, with contours of the theory. Theory is known only at the points of the sweep;
-    straight lines join these. Vapour pressures at several temperatures are drawn as ln p against 1/T, each with the
-    slope that was measured in the same run.
+    One setting is on the horizontal axis. A second one gives a curve for each of its values, of at most six values.
+    Theory is known only at the points of the sweep; straight lines join these. Vapour pressures at several
+    temperatures are drawn as ln p against 1/T, each with the slope that was measured in the same run.
 
     Parameters
     ----------
@@ -79,7 +119,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
 
     Examples
     --------
-    >>> import xarray as xr
+    >>> import json, xarray as xr
     >>> made = {"dimensions": {"temperature": "temperature"}, "headlines": ["speed"], "members": 4}
     >>> swept = xr.Dataset(
     ...     {"speed": ("temperature", [448.0, 468.0], {"units": "m s-1", "long_name": "mean speed"})},
@@ -91,50 +131,89 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     ('temperature (°C)', 'mean speed (m s⁻¹)')
     """
     look = find(theme)
-    swept = Varied.read(dataset)
-    across, other = swept.across, swept.other
-    if is_coexistence(swept):
-        return draw_coexistence(swept, look)
-    if other is not None and swept.dataset.sizes[other] > _MOST_CURVES:
-        return draw_fields(swept, swept.names[:MOST_PANELS], look)
-    flat, made = _panels(swept)
+    about = stated(dataset, "atmosbox_parameters", dict)["sweep"]
+    dims = [str(name) for name in about["dimensions"].values()]
+    if len(dims) > 2:
+        raise FileError(
+            f"A figure shows at most two settings that vary, and this sweep varies {', '.join(dims)}: "
+            "sweep over two of them, or draw parts of the file yourself."
+        )
+    dataset = dataset.swap_dims({dim: name for dim, name in about["dimensions"].items() if dim != name})
+    if missing := [dim for dim in dims if dim not in dataset.sizes]:
+        raise FileError(f"The file lacks {missing[0]}, the setting that varies: type the sweep again.")
+    names = [str(name) for name in about["headlines"] if name in dataset and np.isfinite(dataset[name].values).any()]
+    if not names:
+        raise FileError("The file has nothing to draw: no run of this sweep has measured anything; see member_reason.")
+    names.sort(key=lambda name: _theory(dataset, name) is None)
+    # on the horizontal axis: a numeric setting if there is any, and of these the one with the most values
+    dims.sort(key=lambda dim: (dataset[dim].dtype.kind in "fi", dataset.sizes[dim]), reverse=True)
+    members = int(about["members"])
+    if dims == ["temperature"] and is_coexistence(dataset, names):
+        return draw_coexistence(dataset, members, look)
+    if len(dims) > 1:
+        shown = np.linspace(0, dataset.sizes[dims[1]] - 1, min(_MOST_CURVES, dataset.sizes[dims[1]]))
+        dataset = dataset.isel({dims[1]: shown.round().astype(int)})
+    settings = [_setting(dataset, dim) for dim in dims]
+    across = settings[0]
+    flat, made = _panels(
+        dataset, names[:MOST_PANELS], settings, "one run" if members == 1 else f"mean of {members} runs"
+    )
     drawing = figure_of_panels(flat.assign_attrs(atmosbox_panels=to_json(made)), theme)
-    if not swept.numeric(across):
+    if not across.numeric:
         with style(look):
             for axes in drawing.axes:
-                axes.set_xticks(swept.places(across), swept.words(across), minor=False)
+                axes.set_xticks(across.values, across.words, minor=False)
                 axes.set_xticks([], minor=True)
-                axes.set_xlabel(swept.name(across))
+                axes.set_xlabel(across.name)
     return drawing
 
 
-def _panels(swept: Varied) -> tuple[xr.Dataset, tuple[Panel, ...]]:
-    """Return a sweep as curves along one dimension, and a panel for each of the first four headlines."""
-    dataset, across, other = swept.dataset, swept.across, swept.other
-    unit = swept.units(across)[0] if swept.numeric(across) else "1"
-    places = dataset[across].values if swept.numeric(across) else swept.places(across)
-    flat = dataset.drop_vars([*dataset.data_vars, *dataset.coords]).assign_coords(
-        {across: (across, places, {"units": unit})}
-    )
-    parts = [""] if other is None else swept.words(other)
+def _theory(dataset: xr.Dataset, name: str) -> Floats | None:
+    """Return the theory of a headline in SI units; None where there is none, or only zero."""
+    if f"{name}_theory" not in dataset:
+        return None
+    answer = np.asarray(dataset[f"{name}_theory"].values, dtype=np.float64)
+    return answer if np.any(np.nan_to_num(answer)) else None
+
+
+def _panels(
+    dataset: xr.Dataset, names: list[str], settings: list[_Setting], runs: str
+) -> tuple[xr.Dataset, tuple[Panel, ...]]:
+    """Return a sweep as curves along one dimension, and a panel for each headline."""
+    across, other = settings[0], settings[1] if len(settings) > 1 else None
+    coordinate = (across.dim, across.values, {"units": across.unit})
+    flat = dataset.drop_vars([*dataset.data_vars, *dataset.coords]).assign_coords({across.dim: coordinate})
     made = []
-    for name in swept.names[:MOST_PANELS]:
+    for name in names:
         data: list[Line] = []
         theory: list[Line] = []
-        for k, word in enumerate(parts):
-            here = dataset if other is None else dataset.isel({other: k})
-            stem = name if other is None else f"{name}__{k}"
+        for k, word in enumerate([""] if other is None else other.words):
+            here, stem = (dataset, name) if other is None else (dataset.isel({other.dim: k}), f"{name}__{k}")
             for suffix in ("", "_se", "_theory"):
                 if name + suffix in dataset:
-                    variable = here[name + suffix]
-                    flat[stem + suffix] = (across, variable.values, dict(variable.attrs))
-            runs = "one run" if swept.members == 1 else f"mean of {swept.members} runs"
-            label = runs if other is None else f"{swept.name(other)} {word}"
-            data.append(Line(across, stem, label, error=f"{stem}_se" if f"{stem}_se" in flat else None))
+                    flat[stem + suffix] = (across.dim, here[name + suffix].values, dict(here[name + suffix].attrs))
+            label = runs if other is None else f"{other.name} {word}"
+            data.append(Line(across.dim, stem, label, error=f"{stem}_se" if f"{stem}_se" in flat else None))
             if f"{stem}_theory" in flat:
-                said = "theory, joined" if other is None else f"theory, {label}"
-                theory.append(Line(across, f"{stem}_theory", said, "theory"))
-        made.append(_panel(swept, flat, name, (*data, *_different(theory, flat))))
+                said = "theory, joined" if other is None or len(other.words) > _MOST_NAMED else f"theory, {label}"
+                theory.append(Line(across.dim, f"{stem}_theory", said, "theory"))
+        lines = (*data, *_different(theory, flat))
+        attributes = dataset[name].attrs
+        label = str(attributes.get("long_name", name))
+        made.append(
+            Panel(
+                "line",
+                label[:1].upper() + label[1:],
+                lines,
+                x_label=across.label,
+                y_label=label,
+                x_unit=across.shown,
+                y_unit=str(attributes.get("display_units", "")),
+                x_scale="log" if across.geometric else "linear",
+                y_scale="log" if _spans(np.concatenate([flat[line.y].values for line in lines])) else "linear",
+                note=_largest_difference(dataset, name, settings),
+            )
+        )
     return flat, tuple(made)
 
 
@@ -149,33 +228,15 @@ def _different(theory: list[Line], flat: xr.Dataset) -> list[Line]:
     return [replace(theory[0], label="theory, joined")]
 
 
-def _panel(swept: Varied, flat: xr.Dataset, name: str, lines: tuple[Line, ...]) -> Panel:
-    attributes = swept.dataset[name].attrs
-    label = str(attributes.get("long_name", name))
-    across = swept.across
-    return Panel(
-        "line",
-        label[:1].upper() + label[1:],
-        lines,
-        x_label=swept.label(across, _LONGEST),
-        y_label=label,
-        x_unit=swept.units(across)[1] if swept.numeric(across) else "1",
-        y_unit=str(attributes.get("display_units", "")),
-        x_scale="log" if swept.geometric(across) else "linear",
-        y_scale="log" if _spans(np.concatenate([flat[line.y].values for line in lines])) else "linear",
-        note=_misfit(swept, name),
-    )
-
-
 def _spans(values: Floats) -> bool:
     """Tell whether all values are positive and span more than a factor of 100."""
     seen = values[np.isfinite(values)]
     return bool(seen.size and seen.min() > 0.0 and seen.max() > _WIDE * seen.min())
 
 
-def _misfit(swept: Varied, name: str) -> str:
+def _largest_difference(dataset: xr.Dataset, name: str, settings: list[_Setting]) -> str:
     """Return text with the difference from theory where it is most standard errors; empty without theory or errors."""
-    dataset, answer = swept.dataset, swept.theory(name)
+    answer = _theory(dataset, name)
     if answer is None or f"{name}_se" not in dataset:
         return ""
     attributes = dataset[name].attrs
@@ -189,10 +250,9 @@ def _misfit(swept: Varied, name: str) -> str:
     sizes = np.where(known, np.abs(misfit) / np.where(known, error, 1.0), -1.0)
     place = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
     values = [float(convert(each[place], unit, shown, name=name, difference=True)) for each in (misfit, error)]
-    where = []
-    for dim, k in zip(map(str, dataset[name].dims), place, strict=True):
-        word = swept.words(dim)[int(k)]
-        where.append(word if swept.numeric(dim) and " " in word else f"{swept.name(dim)} {word}")
+    at = dict(zip(map(str, dataset[name].dims), place, strict=True))
+    words = [(each, each.words[int(at[each.dim])]) for each in settings]
+    where = [word if each.numeric and " " in word else f"{each.name} {word}" for each, word in words]
     spelling = of_difference(shown)
     units = "" if spelling == "1" else f" {spelled(spelling)}"
     return f"largest difference (at {', '.join(where)}) = {number(*values, signed=True)}{units}"

@@ -37,6 +37,7 @@ CURVES: dict[str, tuple[tuple[str, ...], tuple[Any, ...], float]] = {
 }
 """Colours and dashes of the curves of each role, and their width in units of the theme's."""
 FIELD_COLOURS = "viridis"
+AGREES = _GREEN
 # Areas differ by colour and by hatching; the background lines of a diagram are paler than any curve.
 AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}
 AREA_HATCHES = {"CAPE": "////", "CIN": "\\\\\\\\"}
@@ -147,8 +148,6 @@ def style(theme: Theme) -> AbstractContextManager[None]:
         "font.size": theme.text,
         "axes.titlesize": theme.title,
         "axes.labelsize": theme.text,
-        "xtick.labelsize": theme.text,
-        "ytick.labelsize": theme.text,
         "legend.fontsize": theme.text,
         "legend.frameon": False,
         "axes.linewidth": theme.line / 2,
@@ -157,29 +156,21 @@ def style(theme: Theme) -> AbstractContextManager[None]:
         "axes.edgecolor": FAINT,
         "axes.labelcolor": DARK,
         "text.color": DARK,
-        "xtick.color": FAINT,
-        "ytick.color": FAINT,
-        "xtick.labelcolor": DARK,
-        "ytick.labelcolor": DARK,
         "lines.linewidth": theme.line,
         "lines.markersize": theme.marker,
-        "lines.scale_dashes": True,
         "lines.solid_capstyle": "butt",
-        "xtick.minor.size": 0.15 * theme.text,
-        "ytick.minor.size": 0.15 * theme.text,
-        "xtick.major.size": 0.35 * theme.text,
-        "ytick.major.size": 0.35 * theme.text,
         "grid.color": "#d9d9d9",
         "grid.linewidth": theme.line / 3,
         "hatch.linewidth": theme.line / 3,
         "axes.axisbelow": True,
-        "axes.unicode_minus": True,
         "axes.formatter.useoffset": False,
         "axes.formatter.limits": (-9, 9),
         "figure.dpi": theme.dots_per_inch,
-        "savefig.dpi": 300,
         "svg.hashsalt": "atmosbox",
         "svg.fonttype": "path",
         "pdf.fonttype": 42,
     }
+    for axis in ("xtick", "ytick"):
+        settings |= {f"{axis}.labelsize": theme.text, f"{axis}.color": FAINT, f"{axis}.labelcolor": DARK}
+        settings |= {f"{axis}.minor.size": 0.15 * theme.text, f"{axis}.major.size": 0.35 * theme.text}
     return matplotlib.style.context(["default", settings], after_reset=True)

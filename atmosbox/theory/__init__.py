@@ -22,6 +22,7 @@ barometric          how the density of a gas decreases with height
 column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
 heated_below        air between a warm floor and a cold ceiling: at rest, the adiabat, the onset of motion
+walled_gas          a gas in a cube with walls: its density at a pressure, how often its molecules collide
 lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
 environment         the environment of a parcel: lapse rates, pressures and heights
@@ -169,6 +170,7 @@ from atmosbox.theory.wall_law import (
     emission_normal_speed,
     free_molecular_slab,
 )
+from atmosbox.theory.walled_gas import WalledGas, walled_gas
 from atmosbox.theory.well_gas import (
     square_well_compressibility,
     square_well_second_virial,
@@ -203,6 +205,7 @@ __all__ = [
     "RestState",
     "SimpleFluid",
     "VaporNumber",
+    "WalledGas",
     "adiabatic_index",
     "adiabatic_lapse_rate",
     "barometric_density",
@@ -292,6 +295,7 @@ __all__ = [
     "temperature_noise",
     "vapor_pressure",
     "virtual_temperature",
+    "walled_gas",
     "water_surface_tension",
     "well_vapor_pressure",
     "wet_bulb_temperature",

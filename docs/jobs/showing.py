@@ -12,8 +12,7 @@ from jobs.registry import Findings, job
 import atmosbox
 from atmosbox.page import save
 from atmosbox.plot.compare import compared, naming
-from atmosbox.plot.compare.compared_file import spoken
-from atmosbox.plot.comparison import figure
+from atmosbox.plot.compare.figure import figure, spoken
 from atmosbox.text.comparison_table import comparison_lines
 
 WIDTH, HEIGHT = 1280, 720

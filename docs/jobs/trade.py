@@ -28,7 +28,6 @@ def trade(found: Findings) -> None:
     """Draw the figure of each scene."""
     for scene in SCENES:
         found.figure(tradeoff_figure.figure(measured(scene)), f"tradeoff-{scene}", 130)
-    found.figure(tradeoff_figure.figure(measured(SCENES[0]), all_panels=True), f"tradeoff-{SCENES[0]}-all", 130)
 
 
 @job("answer", quick=True)

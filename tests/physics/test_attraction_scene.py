@@ -31,7 +31,7 @@ def test_a_drop_grows_that_nobody_put_in_and_none_without_attraction():
 
 def test_a_drop_and_a_gas_state_their_temperature_and_pressure_beside_theory():
     for settings in ({"duration": "0.8 ns"}, {"duration": "0.2 ns", **HARD}):
-        _, found, _ = run(molecules=400, **settings)
+        data, found, _ = run(molecules=400, **settings)
         counts = ["last_largest_drop_molecule_count", "last_vapor_molecule_count"]
         assert list(found) == [*counts, "mean_temperature", "mean_virial_pressure"]
         # clusters in the gas are rare: their number has no error bar
@@ -40,6 +40,8 @@ def test_a_drop_and_a_gas_state_their_temperature_and_pressure_beside_theory():
             assert found[name].agrees
             assert 0.0 < found[name].standard_error < 0.1 * found[name].value
             assert found[name].tolerance < 0.15 * found[name].theory
+        drawn = data.virial_pressure_theory.values[data.sizes["elapsed_time"] // 2 :].mean()
+        assert drawn == pytest.approx(found["mean_virial_pressure"].theory, rel=0.02)  # the curve beside the number
 
 
 def test_without_a_bath_motion_gains_what_attraction_loses():

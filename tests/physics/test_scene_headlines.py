@@ -108,3 +108,10 @@ def test_two_hundred_molecules_press_and_meet_as_theory_says_at_any_density(pres
     assert all(headline.agrees for headline in found.values())
     assert found["mean_pressure"].theory == pytest.approx(100.0 * pressure, rel=1e-12)
     assert not any(headline.tolerance for headline in found.values())
+
+
+def test_the_histogram_of_speeds_has_room_for_molecules_between_the_warmest_walls():
+    found = run("temperature", molecules=20, duration="2 ns").dataset
+    thermal = math.sqrt(1.380649e-23 * 773.15 / (28.9647e-3 / 6.02214076e23))
+    assert found.speed_bnds.values.max() >= 4.5 * thermal  # of walls at 500 degC, as hot as the slider makes them
+    assert np.allclose(np.diff(found.speed), found.speed.values[0] * 2.0)

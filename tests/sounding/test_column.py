@@ -4,7 +4,7 @@ import pytest
 
 from atmosbox.errors import SoundingError
 from atmosbox.scene.conversion import known_unit
-from atmosbox.scene.sounding.column import QUANTITIES, asked_units, number, stated_columns, unit_of
+from atmosbox.scene.sounding.column import QUANTITIES, number, stated_columns, unit_of
 
 
 def test_every_name_of_a_quantity_is_found_and_is_of_no_other():
@@ -37,11 +37,6 @@ def test_units_are_known_in_capitals_too():
         assert unit_of("pressure", text, "here") == known_unit("hPa")
 
 
-def test_units_of_height_are_metres_under_many_names():
-    for text in ["m", "gpm", "m MSL", "Meters"]:
-        assert unit_of("height", text, "here") == known_unit("m")
-
-
 def test_a_wrong_unit_is_refused_with_the_usual_one():
     cases = [
         (None, "has no unit"),
@@ -50,14 +45,8 @@ def test_a_wrong_unit_is_refused_with_the_usual_one():
         ("#!", "the unit #! of the pressure is not"),
     ]
     for text, sentence in cases:
-        with pytest.raises(
-            SoundingError, match=rf"here: .*{sentence}.*: write it as .pressure \[hPa\]. or give units="
-        ):
+        with pytest.raises(SoundingError, match=rf"here: .*{sentence}.*: name it, as in .pressure \[hPa\]"):
             unit_of("pressure", text, "here")
-
-
-def test_no_units_asked_for_are_none():
-    assert asked_units(None) == {}
 
 
 def test_a_number_is_read():

@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.scene.sounding import delimited, read
+from atmosbox.scene.sounding import read
 
 KELVIN = 273.15
 
@@ -27,7 +27,7 @@ def test_usual_names_units_and_separators_are_understood(written, levels, same_a
 def test_columns_may_stand_in_any_order_among_others(written, levels, same_as):
     header = ["time [s]", "Td [K]", "RH", "T [degC]", "p [Pa]"]
     lines = table(levels, header, lambda p, z, t, td: (1, td + KELVIN, 50, t, p * 100))
-    same_as(read(written(lines)), height=False)
+    same_as(read(written(lines)))
 
 
 def test_units_may_stand_in_the_second_row(written, levels, same_as):
@@ -36,17 +36,6 @@ def test_units_may_stand_in_the_second_row(written, levels, same_as):
         separator = ";" if ";" in units else ","
         rows = [line.replace(",", separator) for line in lines]
         same_as(read(written([rows[0], units, *rows[1:]])))
-
-
-def test_units_may_be_given(written, levels, same_as):
-    lines = table(levels, ["p", "z", "T", "Td"], lambda *level: level)
-    given = {"pressure": "hPa", "temperature": "degC", "dewpoint": "degC", "height": "m"}
-    same_as(read(written(lines), units=given))
-
-
-def test_units_that_are_given_prevail_over_wrong_ones(written, csv_lines, same_as):
-    csv_lines[0] = csv_lines[0].replace("hPa", "Pa")
-    same_as(read(written(csv_lines), units={"pressure": "hPa"}))
 
 
 def test_comments_and_blank_lines_are_skipped(written, csv_lines, same_as):
@@ -115,8 +104,6 @@ def test_a_cell_or_a_line_of_great_length_is_refused_and_not_taken_for_names(wri
         read(written([csv_lines[0] + "," * 10_000, *csv_lines[1:]]))
 
 
-def test_a_text_without_names_is_not_recognised(csv_lines):
-    assert delimited.recognised(csv_lines)
-    assert not delimited.recognised(csv_lines[1:])
-    with pytest.raises(SoundingError, match="no line names the columns"):
-        delimited.parse(csv_lines[1:], "a.csv", "a")
+def test_a_text_without_names_is_not_recognised(written, csv_lines):
+    with pytest.raises(SoundingError, match="begins no sounding that is known"):
+        read(written(csv_lines[1:]))

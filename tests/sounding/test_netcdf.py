@@ -3,7 +3,7 @@ import pytest
 import xarray as xr
 
 from atmosbox.errors import SoundingError
-from atmosbox.scene.sounding import profile_netcdf, read
+from atmosbox.scene.sounding import read
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_levels_from_the_top_down_are_turned_and_the_title_is_the_name(dataset, 
 
 def test_the_height_of_a_thermometer_is_not_taken_for_that_of_the_levels(dataset, saved, same_as):
     odd = dataset.drop_vars("c").assign(height=((), 2.0, {"units": "m", "standard_name": "height"}))
-    same_as(read(saved(odd)), height=False)
+    same_as(read(saved(odd)))
 
 
 def test_fill_values_are_missing(dataset, saved):
@@ -68,19 +68,24 @@ def test_fill_values_are_missing(dataset, saved):
     assert len(sounding) == 11
 
 
-def test_units_may_be_given(dataset, saved, same_as):
+def test_a_variable_without_a_unit_is_refused(dataset, saved):
     del dataset["a"].attrs["units"]
     with pytest.raises(SoundingError, match="the temperature has no unit"):
         read(saved(dataset))
-    same_as(read(saved(dataset), units={"temperature": "degC"}))
 
 
 def test_a_file_without_one_profile_is_refused_in_a_sentence(dataset, saved):
     cases = [
         (lambda d: d.drop_vars("b"), 'no variable is the dewpoint: give one the standard_name "dew_point_temperature"'),
-        (lambda d: d.expand_dims(time=[0.0, 1.0]), "the temperature in a is not one profile, for it has time = 2"),
-        (lambda d: d.isel(level=0), "the pressure in level is not one profile, for it has no dimension"),
-        (lambda d: d.assign(b=d.b.rename(level="other")), "b runs along other, but the pressure along level"),
+        (lambda d: d.expand_dims(time=[0.0, 1.0]), "the temperature in a is not one value for each level .* time = 2"),
+        (
+            lambda d: d.isel(level=0),
+            "the pressure in level is not one value for each level of the pressure, for it has no dimension",
+        ),
+        (
+            lambda d: d.assign(b=d.b.rename(level="other")),
+            "the dewpoint in b is not one value for each level of the pressure, for it has other = 12",
+        ),
         (lambda d: d.assign(a=d.a.copy(data=["warm"] * 12)), "a holds no numbers"),
         (lambda d: d.assign(a=d.a.where(d.level > 200, np.inf)), "level 11: the temperature is not finite"),
         (lambda d: d.assign(b=d.b + 20.0), "level 1: the dewpoint of .* degC is above the temperature"),
@@ -99,8 +104,3 @@ def test_a_damaged_file_is_refused(dataset, saved):
         path.write_bytes(path.read_bytes()[:kept])
         with pytest.raises(SoundingError, match="is damaged or not readable"):
             read(path)
-
-
-def test_other_files_are_not_recognised():
-    assert profile_netcdf.recognised(b"\x89HDF\r\n\x1a\n")
-    assert not profile_netcdf.recognised(b"pressure")

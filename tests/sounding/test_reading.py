@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from atmosbox.errors import FileError, SoundingError, UnitError
+from atmosbox.errors import FileError, SoundingError
 from atmosbox.scene.sounding import Sounding, read, reading
 
 
@@ -88,18 +88,6 @@ def test_a_text_of_too_many_lines_is_refused(written, csv_lines, same_as):
     same_as(read(written([*csv_lines, *[""] * (reading.MOST_LINES - len(csv_lines) - 1)])))
     with pytest.raises(SoundingError, match="has 100014 lines, far more than a sounding"):
         read(written([*csv_lines, *[""] * reading.MOST_LINES]))
-
-
-def test_units_that_cannot_be_are_refused(written, csv_lines):
-    cases = [
-        ({"wind": "m/s"}, "units = wind is not a column of a sounding: name one of pressure, temperature, dewpoint"),
-        ({"pressure": "degC"}, "units = degC is not a unit of pressure"),
-        ({"pressure": "blorp"}, "units = blorp is not a unit of pressure"),
-        ({"pressure": 100}, "units = 100 is not a unit of pressure"),
-    ]
-    for units, sentence in cases:
-        with pytest.raises(UnitError, match=sentence):
-            read(written(csv_lines), units=units)
 
 
 def test_what_is_read_is_a_sounding_from_the_ground_up(written, csv_lines, same_as):

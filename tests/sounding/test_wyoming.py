@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.scene.sounding import read, wyoming
+from atmosbox.scene.sounding import read
 
 
 def page(lines, title="99999 XYZ Nowhere &amp; Co Observations at 00Z 01 Feb 2003"):
@@ -71,6 +71,23 @@ def test_a_word_among_the_numbers_is_refused(written, wyoming_lines):
         read(written(wyoming_lines))
 
 
-def test_a_table_without_units_is_refused(wyoming_lines):
+def test_a_table_without_units_is_refused(written, wyoming_lines):
     with pytest.raises(SoundingError, match="line 2: no line of units"):
-        wyoming.parse(wyoming_lines[:2], "a.txt", "a")
+        read(written(wyoming_lines[:2]))
+
+
+def test_the_csv_of_the_university_is_read(written, levels, same_as):
+    header = (
+        "time,longitude,latitude,pressure_hPa,geopotential height_m,temperature_C,dew point temperature_C,"
+        "ice point temperature_C,relative humidity_%,humidity wrt ice_%,mixing ratio_g/kg,wind direction_degree,"
+        "wind speed_m/s"
+    )
+    rows = [
+        f"2026-07-22 23:{k:02d}:05,-97.4400,35.1800,{p},{z},{t},{td},{td},55,,9.1,160,9.3"
+        for k, (p, z, t, td) in enumerate(levels)
+    ]
+    same_as(read(written([header, *rows])))
+    blank = rows[-1].split(",")
+    blank[6:11] = [""] * 5  # no humidity at the top
+    sounding = read(written([header, *rows[:-1], ",".join(blank)]))
+    assert "Above 200 hPa no dewpoint: taken 30 K below the temperature." in sounding.remarks

@@ -124,8 +124,11 @@ export class Graph {
 
   #measure() {
     const known = { x: [], y: [] };
+    const histogram = this.panel.kind === "histogram"; // its axis ends where data and theory are negligible
+    const least = histogram ? 1e-3 * Math.max(0, ...this.curves.flatMap(({ y }) => y.filter(Number.isFinite))) : -Infinity;
     for (const { x, y, error } of this.curves) {
-      for (let index = 0; index < x.length; index += 1) {
+      const last = histogram ? y.findLastIndex((value) => value > least) : x.length - 1;
+      for (let index = 0; index <= last; index += 1) {
         if (!Number.isFinite(x[index]) || !Number.isFinite(y[index])) continue;
         const spread = Number.isFinite(error?.[index]) ? error[index] : 0;
         const across = this.panel.across;

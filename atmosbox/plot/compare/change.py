@@ -159,31 +159,21 @@ def _value(value: object, parameter: Parameter | None) -> str:
 
 def _labels(changes: Sequence[Change], files: Sequence[str]) -> tuple[str, ...]:
     """Return a label for each run; labels that would be equal are made different by the name of the file."""
+
+    def named(change: Change, run: int) -> str:
+        return (
+            change.values[run] if change.name == "engine" else f"{change.name.replace('_', ' ')} {change.values[run]}"
+        )
+
     unlike = any(change.name == "scene" for change in changes)
     if unlike or not changes or (len(changes) > _MOST_SAID and len(set(files)) == len(files)):
         made = list(files)
-    elif len(changes) == 1 and (changes[0].name == "engine" or _says_what(changes[0])):
+    elif len(changes) == 1 and all(" " in value for value in changes[0].values):  # with a unit that tells what it is
         made = list(changes[0].values)
     else:
-        made = [
-            ", ".join(
-                change.values[run]
-                if change.name == "engine"
-                else f"{change.name.replace('_', ' ')} {change.values[run]}"
-                for change in changes
-            )
-            for run in range(len(files))
-        ]
-    alike = {label for label in made if made.count(label) > 1}
-    made = [
-        f"{label} ({file})" if label in alike and label != file else label
-        for label, file in zip(made, files, strict=True)
-    ]
+        made = [", ".join(named(change, run) for change in changes) for run in range(len(files))]
+    alike = [made.count(label) > 1 and label != file for label, file in zip(made, files, strict=True)]
+    made = [f"{label} ({file})" if twin else label for label, file, twin in zip(made, files, alike, strict=True)]
     return tuple(
         f"{label} [{made[:k].count(label) + 1}]" if label in made[:k] else label for k, label in enumerate(made)
     )
-
-
-def _says_what(change: Change) -> bool:
-    """Tell whether all values have a unit, so that they need no name beside them."""
-    return all(" " in value for value in change.values)

@@ -6,23 +6,17 @@ file           what is in it
 profile        the sounding itself: pressure, temperature, dewpoint from the ground up
 column         the names and units of its columns
 plausibility   what no sounding can be, and what is doubtful in one
-tabulated      from the columns of a file to a sounding: units, missing values, order
+table          from the columns of a file to a sounding: units, missing values, order
+formats        the text formats: Wyoming, IGRA, BUFKIT, SHARPpy, and CSV and the like
+netcdf         profiles as xarray and MetPy write them
 reading        opens a file and recognises its format
-wyoming        the University of Wyoming's tables, as text or as a web page
-igra           the Integrated Global Radiosonde Archive, version 2
-bufkit         the soundings of a forecast
-sharppy        SHARPpy's text
-delimited      CSV and the like
-profile_netcdf profiles as xarray and MetPy write them
 analytic       Weisman and Klemp's formula for the environment of a thunderstorm
-hydrostatics   the heights of levels
-lifted_parcel  LCL, LFC, EL, CAPE and CIN, by MetPy
+lifted_parcel  LCL, LFC, EL, CAPE and CIN, by MetPy, and the heights of levels
 ============== =========================================================================
 """
 
 from atmosbox.scene.sounding.analytic import weisman_klemp
-from atmosbox.scene.sounding.hydrostatics import hydrostatic_height
-from atmosbox.scene.sounding.lifted_parcel import Indices, Level, indices
+from atmosbox.scene.sounding.lifted_parcel import Indices, Level, hydrostatic_height, indices
 from atmosbox.scene.sounding.profile import Sounding
 from atmosbox.scene.sounding.reading import read
 

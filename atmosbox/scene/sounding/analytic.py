@@ -16,50 +16,35 @@ __all__ = ["weisman_klemp"]
 _DRY_GAS = GAS_CONSTANT / DRY_AIR.molar_mass  # J kg-1 K-1
 _HEAT = 3.5 * _DRY_GAS  # J kg-1 K-1, at constant pressure
 _EPSILON = WATER.molar_mass / DRY_AIR.molar_mass
-_REFERENCE = 1000e2  # Pa, of potential temperature
-_LEVELS = 65  # every 250 m
-_TOP = 16e3  # m
-_STEPS = 25  # of the integration, between two levels
+_GROUND, _GROUND_THETA = 1000e2, 300.0  # Pa, K
+_TROPOPAUSE, _TROPOPAUSE_THETA, _TROPOPAUSE_TEMPERATURE = 12e3, 343.0, 213.0  # m, K, K
+_TOP, _LEVELS, _STEPS = 16e3, 65, 25  # m; levels every 250 m; steps of the integration between two levels
 
 Floats = NDArray[np.float64]
 
 
-def weisman_klemp(
-    mixing_ratio: float = 0.014,
-    surface_pressure: float = 1000e2,
-    surface_potential_temperature: float = 300.0,
-    tropopause_height: float = 12e3,
-    tropopause_potential_temperature: float = 343.0,
-    tropopause_temperature: float = 213.0,
-) -> Sounding:
+def weisman_klemp(mixing_ratio: float = 0.014) -> Sounding:
     r"""Return the analytic sounding of Weisman and Klemp, in which many simulated storms begin [1]_.
 
     Below the tropopause, with s = (z / z_tr)^(5/4), the potential temperature is theta_0 + (theta_tr - theta_0) s
     and the relative humidity 1 - 3 s / 4; above it they are theta_tr exp(g (z - z_tr) / (c_p T_tr)) and 1/4.
-    Near the ground the mixing ratio is constant; of all parameters it changes CAPE most.
+    At the ground the pressure is 1000 hPa and theta_0 = 300 K; z_tr = 12 km, theta_tr = 343 K and T_tr = 213 K. Near
+    the ground the mixing ratio is constant; of all parameters it changes CAPE most.
 
     Parameters
     ----------
     mixing_ratio
         The largest mixing ratio of vapour, 0.011 to 0.016 in the paper [kg kg-1].
-    surface_pressure
-        Pressure at the ground [Pa].
-    surface_potential_temperature
-        theta_0 at the ground; at a surface pressure of 1000 hPa it is the temperature there [K].
-    tropopause_height, tropopause_potential_temperature, tropopause_temperature
-        z_tr [m], theta_tr [K] and T_tr [K].
 
     Returns
     -------
     Sounding
-        65 levels, every 250 m up to 16 km, with their heights.
+        65 levels, every 250 m up to 16 km.
 
     Raises
     ------
     SettingError
-        If a number is not finite or outside the limits.
-    SoundingError
-        If the numbers, each possible by itself, do not describe an atmosphere together.
+        If it is not between 0.0001 and 0.03.
 
     Notes
     -----
@@ -86,55 +71,32 @@ def weisman_klemp(
     >>> weisman_klemp()
     <Sounding Weisman and Klemp, 14 g/kg: 65 levels from 1000 hPa, 26.85 degC to 107.878 hPa, -55.08 degC>
     """
-    given = {
-        "mixing_ratio": mixing_ratio,
-        "surface_pressure": surface_pressure,
-        "surface_potential_temperature": surface_potential_temperature,
-        "tropopause_height": tropopause_height,
-        "tropopause_potential_temperature": tropopause_potential_temperature,
-        "tropopause_temperature": tropopause_temperature,
-    }
-    for name, value in given.items():
-        low, high, unit = _LIMITS[name]
-        if not low <= value <= high:  # also true for NaN
-            raise SettingError(name, value, "is not what the formula is for", f"give {low:g} to {high:g} {unit}")
+    if not 1e-4 <= mixing_ratio <= 0.03:  # also true for NaN
+        fix = "give 0.0001 to 0.03 kg kg-1"
+        raise SettingError("mixing_ratio", mixing_ratio, "is not what the formula is for", fix)
     height = np.linspace(0.0, _TOP, (_LEVELS - 1) * _STEPS + 1)
-    share = (np.minimum(height, tropopause_height) / tropopause_height) ** 1.25
-    theta = surface_potential_temperature + (tropopause_potential_temperature - surface_potential_temperature) * share
-    above = np.maximum(height - tropopause_height, 0.0)
-    theta *= np.exp(STANDARD_GRAVITY * above / (_HEAT * tropopause_temperature))
-    humidity = 1.0 - 0.75 * share
-    pressure, vapor = _balance(height, theta, humidity, mixing_ratio, surface_pressure)
-    temperature = theta * (pressure / _REFERENCE) ** (_DRY_GAS / _HEAT)
-    grams = f"{mixing_ratio * 1e3:g} g/kg"
+    share = (np.minimum(height, _TROPOPAUSE) / _TROPOPAUSE) ** 1.25
+    theta = _GROUND_THETA + (_TROPOPAUSE_THETA - _GROUND_THETA) * share
+    above = np.maximum(height - _TROPOPAUSE, 0.0)
+    theta *= np.exp(STANDARD_GRAVITY * above / (_HEAT * _TROPOPAUSE_TEMPERATURE))
+    pressure, vapor = _balance(height, theta, 1.0 - 0.75 * share, mixing_ratio)
     level = slice(None, None, _STEPS)
     return Sounding(
         pressure[level],
-        temperature[level],
+        (theta * (pressure / _GROUND) ** (_DRY_GAS / _HEAT))[level],
         _dewpoint(pressure * vapor / (_EPSILON + vapor))[level],
-        height[level],
-        f"Weisman and Klemp, {grams}",
+        f"Weisman and Klemp, {mixing_ratio * 1e3:g} g/kg",
         "the formula of M. L. Weisman and J. B. Klemp, Mon. Wea. Rev. 110, 504 (1982)",
     )
 
 
-_LIMITS = {
-    "mixing_ratio": (1e-4, 0.03, "kg kg-1"),
-    "surface_pressure": (500e2, 1080e2, "Pa"),
-    "surface_potential_temperature": (250.0, 330.0, "K"),
-    "tropopause_height": (5e3, 16e3, "m"),
-    "tropopause_potential_temperature": (280.0, 420.0, "K"),
-    "tropopause_temperature": (170.0, 250.0, "K"),
-}
-
-
-def _balance(height: Floats, theta: Floats, humidity: Floats, cap: float, ground: float) -> tuple[Floats, Floats]:
+def _balance(height: Floats, theta: Floats, humidity: Floats, cap: float) -> tuple[Floats, Floats]:
     """Return pressure and mixing ratio in hydrostatic balance; each depends on the other."""
     power = _HEAT / _DRY_GAS
     step = float(height[1] - height[0])
 
     def vapor_at(exner: float, potential: float, relative: float) -> float:
-        pressure = float(_REFERENCE * exner**power)
+        pressure = float(_GROUND * exner**power)
         saturation = min(_saturation_pressure(potential * exner), 0.5 * pressure)
         return min(cap, relative * _EPSILON * saturation / (pressure - saturation))
 
@@ -142,13 +104,13 @@ def _balance(height: Floats, theta: Floats, humidity: Floats, cap: float, ground
         vapor = vapor_at(exner, potential, relative)
         return -STANDARD_GRAVITY / (_HEAT * potential * (1.0 + vapor / _EPSILON) / (1.0 + vapor))
 
-    exner = [(ground / _REFERENCE) ** (1.0 / power)]
+    exner = [1.0]
     for i in range(height.size - 1):
         half = exner[-1] + slope(exner[-1], theta[i], humidity[i]) * step / 2
         middle = (theta[i] + theta[i + 1]) / 2, (humidity[i] + humidity[i + 1]) / 2
-        exner.append(max(exner[-1] + slope(half, *middle) * step, 1e-3))
+        exner.append(exner[-1] + slope(half, *middle) * step)
     vapor = [vapor_at(*at) for at in zip(exner, theta, humidity, strict=True)]
-    return _REFERENCE * np.array(exner) ** power, np.array(vapor)
+    return _GROUND * np.array(exner) ** power, np.array(vapor)
 
 
 def _saturation_pressure(temperature: float) -> float:

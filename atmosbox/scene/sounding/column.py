@@ -1,15 +1,20 @@
-"""The four columns of a sounding: their names, their units, and their plausible values."""
+"""The columns of a sounding: their names, their units, and their plausible values."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from atmosbox.errors import SoundingError, UnitError, shown
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import SIGNS, Unit, known_unit
 
-__all__ = ["QUANTITIES", "REQUIRED", "Measure", "asked_units", "number", "stated_columns", "unit_of"]
+__all__ = ["QUANTITIES", "Measure", "in_si", "number", "stated_columns", "unit_of"]
+
+Floats = NDArray[np.float64]
 
 
 class Measure(NamedTuple):
@@ -24,39 +29,21 @@ class Measure(NamedTuple):
 
 QUANTITIES: dict[str, Measure] = {
     "pressure": Measure(
-        "Pa",
-        ("air_pressure", "pressure", "pres", "press", "prs", "p", "P", "plev", "isobaric", "level", "lev"),
-        ("hPa", "Pa", "kPa", "inHg"),
-        0.1,
-        110e3,
+        "Pa", ("air_pressure", "pressure", "pres", "press", "prs", "p", "P", "plev", "isobaric", "level", "lev"),
+        ("hPa", "Pa", "kPa", "inHg"), 0.1, 110e3,
     ),
     "temperature": Measure(
-        "K",
-        ("air_temperature", "temperature", "temp", "tmp", "tair", "tdry", "T", "t"),
-        ("degC", "K", "degF"),
-        160.0,
-        335.0,
+        "K", ("air_temperature", "temperature", "temp", "tmp", "tmpc", "tair", "tdry", "T", "t"),
+        ("degC", "K", "degF"), 160.0, 335.0,
     ),
     "dewpoint": Measure(
-        "K",
-        ("dew_point_temperature", "dewpoint_temperature", "dewpoint", "dew_point", "dwpt", "dewpt", "dewp", "td", "dp"),
-        ("degC", "K", "degF"),
-        130.0,
-        320.0,
+        "K", ("dew_point_temperature", "dewpoint_temperature", "dewpoint", "dew_point", "dwpt", "dwpc", "dewpt", "dewp",
+              "td", "dp"),
+        ("degC", "K", "degF"), 130.0, 320.0,
     ),
-    "height": Measure(
-        "m",
-        ("geopotential_height", "altitude", "height", "hght", "hgt", "gph", "geopot_height", "alt", "z", "Z"),
-        ("m", "km", "ft"),
-        -500.0,
-        120e3,
-    ),
-}
-"""The four columns of a sounding."""
-REQUIRED = ("pressure", "temperature", "dewpoint")
-"""The columns that every sounding needs."""
+}  # fmt: skip
+"""The three columns of a sounding; other columns of a file are not read."""
 
-_HEIGHTS = {"gpm": "m", "m msl": "m", "m asl": "m", "geopotential meters": "m", "geopotential_meters": "m"}
 _BRACKETS = re.compile(r"(.+?)\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]")
 _SUFFIX = re.compile(r"(.+?)(?:\s*[/_,:]\s*|\s+)([^\s_/,:]+)")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -73,7 +60,7 @@ def _plain(name: str) -> str:
 def _unit(text: str) -> Unit | None:
     """Return a unit from any of its spellings, or None."""
     text = text.strip()[:40]
-    return known_unit(_HEIGHTS.get(text.casefold(), text)) or known_unit(text.casefold()) if text else None
+    return known_unit(text) or known_unit(text.casefold()) if text else None
 
 
 def _split(cell: str) -> tuple[str, str | None]:
@@ -117,20 +104,14 @@ def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, st
     found: dict[str, tuple[int, str | None]] = {}
     for quantity, measure in QUANTITIES.items():
         claims = [(measure.names.index(name), i) for i, (name, _) in enumerate(cells) if name in measure.names]
-        fitting = [claim for claim in claims if _fits(cells[claim[1]][1], measure)]
-        claims = sorted(fitting or claims)
+        units = {i: _unit(cells[i][1] or "") for _, i in claims}
+        claims = sorted([claim for claim in claims if (units[claim[1]] or measure).si == measure.si] or claims)
         if len(claims) > 1 and claims[0][0] == claims[1][0]:
             twice = shown(header[claims[1][1]].strip())
             raise SoundingError(f"{where}: {twice} is a second column of {quantity}: delete one of the two.")
         if claims:
             found[quantity] = claims[0][1], cells[claims[0][1]][1]
     return found
-
-
-def _fits(unit: str | None, measure: Measure) -> bool:
-    """Return whether a unit, if there is one, can be that of a quantity."""
-    known = _unit(unit) if unit else None
-    return known is None or known.si == measure.si
 
 
 def unit_of(quantity: str, text: str | None, where: str) -> Unit:
@@ -155,46 +136,25 @@ def unit_of(quantity: str, text: str | None, where: str) -> Unit:
     >>> unit_of("pressure", "millibars", "a.csv, line 1").up
     100.0
     """
-    measure = QUANTITIES[quantity]
-    usual = measure.units[0]
-    fix = f'write it as "{quantity} [{usual}]" or give units={{"{quantity}": "{usual}"}}'
-    if not text or not text.strip():
-        raise SoundingError(f"{where}: the {quantity} has no unit: {fix}.")
-    unit = _unit(text)
+    measure, unit = QUANTITIES[quantity], _unit(text or "")
+    if unit is not None and unit.si == measure.si:
+        return unit
+    problem = f"{shown(text or '')} is not a unit of {quantity}"
     if unit is None:
-        raise SoundingError(f"{where}: the unit {shown(text)} of the {quantity} is not known: {fix}.")
-    if unit.si != measure.si:
-        raise SoundingError(f"{where}: {shown(text)} is not a unit of {quantity}: {fix}.")
-    return unit
+        known = f"unit {shown(text)} of the {quantity} is not known" if text and text.strip() else ""
+        problem = f"the {known or f'{quantity} has no unit'}"
+    raise SoundingError(f'{where}: {problem}: name it, as in "{quantity} [{measure.units[0]}]".')
 
 
-def asked_units(units: Mapping[str, str] | None) -> dict[str, str]:
-    """Return the units that a user gave, after a check of each.
-
-    Parameters
-    ----------
-    units
-        Units by the names in :data:`QUANTITIES`.
-
-    Raises
-    ------
-    UnitError
-        If a name is not one of them, or a unit does not belong to the quantity.
+def in_si(values: Floats, unit: Unit) -> Floats:
+    """Return values of a unit in SI units; NaN stays NaN.
 
     Examples
     --------
-    >>> asked_units({"pressure": "hPa"})
-    {'pressure': 'hPa'}
+    >>> in_si(np.array([1000.0, 850.0]), known_unit("hPa"))
+    array([100000.,  85000.])
     """
-    given = dict(units or {})
-    for quantity, text in given.items():
-        if quantity not in QUANTITIES:
-            raise UnitError("units", quantity, "is not a column of a sounding", f"name one of {', '.join(QUANTITIES)}")
-        unit = _unit(text) if isinstance(text, str) else None
-        if unit is None or unit.si != QUANTITIES[quantity].si:
-            fix = f'give units={{"{quantity}": "{QUANTITIES[quantity].units[0]}"}}'
-            raise UnitError("units", text, f"is not a unit of {quantity}", fix)
-    return given
+    return np.asarray(values * (unit.up / unit.down) + unit.offset, dtype=np.float64)
 
 
 def number(token: str, quantity: str, where: str) -> float:
@@ -220,14 +180,15 @@ def number(token: str, quantity: str, where: str) -> float:
     (-12.5, nan)
     """
     text = token.strip().strip("\"'").strip().translate(SIGNS)
-    if _NUMBER.fullmatch(text[:60]) and len(text) <= 60:
-        value = float(text)
-        if abs(value) < 1e30:
-            return value
-    elif _MISSING.fullmatch(text):
+    if _MISSING.fullmatch(text):
         return float("nan")
+    problem = "is not a number: correct it, or write NaN"
+    if _INFINITE.fullmatch(text):
+        problem = "is not finite: correct it, or write NaN"
     elif re.fullmatch(r"[+-]?[0-9]+,[0-9]+", text):
-        raise SoundingError(f"{where}: the {quantity} {shown(text)} is written with a comma: write a decimal point.")
-    problem = "is not finite" if _INFINITE.fullmatch(text) else "is not a number"
-    problem = "is too large" if _NUMBER.fullmatch(text[:60]) else problem
-    raise SoundingError(f"{where}: the {quantity} {shown(text)} {problem}: correct it, or write NaN.")
+        problem = "is written with a comma: write a decimal point"
+    elif _NUMBER.fullmatch(text[:60]):
+        if len(text) <= 60 and abs(value := float(text)) < 1e30:
+            return value
+        problem = "is too large: correct it, or write NaN"
+    raise SoundingError(f"{where}: the {quantity} {shown(text)} {problem}.")

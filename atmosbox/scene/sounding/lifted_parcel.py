@@ -1,4 +1,4 @@
-"""The levels and energies of a parcel that is lifted from the ground in a sounding, computed by MetPy."""
+"""What a sounding means for a parcel lifted from the ground: its levels and energies by MetPy; the levels' heights."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from atmosbox import theory as law
 from atmosbox.errors import SoundingError, shown
-from atmosbox.scene.sounding.hydrostatics import hydrostatic_height
 from atmosbox.scene.sounding.profile import Sounding
+from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
-__all__ = ["Indices", "Level", "indices"]
+__all__ = ["Indices", "Level", "hydrostatic_height", "indices"]
 
 
 @dataclass(frozen=True)
@@ -26,13 +28,10 @@ class Level:
         Pressure [Pa].
     temperature
         Temperature of the parcel there [K].
-    height
-        Height above the lowest level of the sounding; None if it lies above the highest [m].
     """
 
     pressure: float
     temperature: float
-    height: float | None
 
 
 @dataclass(frozen=True)
@@ -94,12 +93,12 @@ def indices(sounding: Sounding) -> Indices:
 
     Examples
     --------
-    Moist air below cold air: a parcel that is lifted a kilometre forms a cloud, and above 1.6 km it rises by itself.
+    Moist air below cold air: a lifted parcel forms a cloud at 890 hPa, and above 830 hPa it rises by itself.
 
     >>> from atmosbox.scene.sounding.analytic import weisman_klemp
     >>> found = indices(weisman_klemp())
-    >>> [round(level.height, -2) for level in (found.lcl, found.lfc, found.el)]
-    [1000.0, 1600.0, 11400.0]
+    >>> [round(level.pressure, -3) for level in (found.lcl, found.lfc, found.el)]
+    [89000.0, 83000.0, 22000.0]
     """
     import metpy.calc as mpcalc
     from metpy.units import units
@@ -116,26 +115,52 @@ def indices(sounding: Sounding) -> Indices:
             f"{shown(sounding.name)}: MetPy finds no parcel's path ({shown(str(error))}): give an ascent that reaches "
             "above the cloud base."
         ) from error
-    height = hydrostatic_height(sounding)
-    lowest = _level(lcl, sounding, height)
+    lowest, free, end = (_level(each) for each in (lcl, lfc, el))
     if lowest is None:
         raise SoundingError(f"{shown(sounding.name)}: MetPy finds no cloud base for the ground: check its dewpoint.")
-    energies = (_number(energy, "J/kg") for energy in (cape, cin))
-    cape_, cin_ = (0.0 if math.isnan(energy) else energy for energy in energies)
-    return Indices(lowest, _level(lfc, sounding, height), _level(el, sounding, height), cape_, cin_)
+    energies = (float(np.nan_to_num(energy.to("J/kg").magnitude)) for energy in (cape, cin))
+    return Indices(lowest, free, end, *energies)
 
 
-def _number(quantity: Any, unit: str) -> float:
-    """Return a quantity of MetPy as a number."""
-    return float(quantity.to(unit).magnitude)
-
-
-def _level(found: Any, sounding: Sounding, height: np.ndarray[Any, np.dtype[np.float64]]) -> Level | None:
+def _level(found: Any) -> Level | None:
     """Return a level from MetPy's pressure and temperature, None if they are NaN."""
-    pressure, temperature = _number(found[0], "Pa"), _number(found[1], "K")
-    if math.isnan(pressure) or math.isnan(temperature):
-        return None
-    above: float | None = None
-    if pressure >= sounding.pressure[-1]:
-        above = float(np.interp(-math.log(pressure), -np.log(sounding.pressure), height))
-    return Level(pressure, temperature, above)
+    pressure, temperature = (float(each.to(unit).magnitude) for each, unit in zip(found, ("Pa", "K"), strict=True))
+    return None if math.isnan(pressure) or math.isnan(temperature) else Level(pressure, temperature)
+
+
+def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
+    r"""Return the height of each level above the lowest one, in hydrostatic balance [m].
+
+    Moist air is light; so the hypsometric equation dz = -(R_d T_v / g) d ln p uses the virtual temperature [1]_.
+
+    Parameters
+    ----------
+    sounding
+        The ascent.
+
+    Returns
+    -------
+    ndarray
+        Geopotential height (level,), 0 at the lowest level [m].
+
+    Notes
+    -----
+    The integral from level to level is the trapezoidal rule in ln p, as in MetPy's ``thickness_hydrostatic``.
+
+    References
+    ----------
+    .. [1] J. M. Wallace and P. V. Hobbs, Atmospheric Science, 2nd ed. (2006), section 3.2.
+
+    Examples
+    --------
+    About half of the air lies below 5.5 km:
+
+    >>> air = Sounding([1000e2, 850e2, 700e2, 500e2, 300e2], [288, 279, 270, 253, 230], [278, 270, 260, 240, 210])
+    >>> round(float(hydrostatic_height(air)[3]), -2)
+    5500.0
+    """
+    vapour = law.mixing_ratio(law.saturation_vapor_pressure(sounding.dewpoint), sounding.pressure)
+    virtual = np.asarray(law.virtual_temperature(sounding.temperature, vapour))
+    scale = GAS_CONSTANT / (DRY_AIR.molar_mass * STANDARD_GRAVITY)
+    layers = scale * (virtual[1:] + virtual[:-1]) / 2 * np.log(sounding.pressure[:-1] / sounding.pressure[1:])
+    return np.concatenate([[0.0], np.cumsum(layers)])

@@ -12,20 +12,9 @@ from numpy.typing import NDArray
 
 from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import Unit, from_si, known_unit
-from atmosbox.scene.sounding.column import QUANTITIES
-from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
+from atmosbox.scene.sounding.column import QUANTITIES, in_si
 
-__all__ = [
-    "FEWEST_LEVELS",
-    "GAP_CEILING",
-    "LARGEST_GAP",
-    "ROUNDING",
-    "check_levels",
-    "check_plausible",
-    "doubts",
-    "in_si",
-    "widest_gap",
-]
+__all__ = ["check_levels", "check_plausible", "doubts", "widest_gap"]
 
 FEWEST_LEVELS = 5
 """Smallest number of levels of a sounding."""
@@ -49,39 +38,18 @@ _GROUND_LAYER = 50e2
 _LOWEST_LAYER = 150e2
 _STRATOSPHERE = 100e2
 _HIGHEST_GROUND = 450e2  # Pa; the highest stations, in Tibet, report some 550 hPa
-_HEIGHT_ERROR = 0.1  # of the thickness between lowest and highest level; moisture and rounding make up 2 %
 
 Floats = NDArray[np.float64]
 Place = Callable[[int], str]
-
-
-def in_si(values: Floats, unit: Unit) -> Floats:
-    """Return values in SI units.
-
-    Parameters
-    ----------
-    values : (level,)
-        The values; NaN stays NaN.
-    unit
-        Their unit.
-
-    Examples
-    --------
-    >>> in_si(np.array([1000.0, 850.0]), known_unit("hPa"))
-    array([100000.,  85000.])
-    """
-    return np.asarray(values * (unit.up / unit.down) + unit.offset, dtype=np.float64)
 
 
 def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
     """Return the first level whose value is outside the limits if its unit is this one; None if there is none."""
     measure, si = QUANTITIES[quantity], in_si(values, unit)
     wrong = np.flatnonzero((si < measure.low) | (si > measure.high))
-    if wrong.size:
-        return int(wrong[0])
-    if quantity == "pressure" and si.size and not np.nanmax(si) >= _HIGHEST_GROUND:
+    if not wrong.size and quantity == "pressure" and not np.nanmax(si) >= _HIGHEST_GROUND:
         return int(np.nanargmax(si))
-    return None
+    return int(wrong[0]) if wrong.size else None
 
 
 def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> None:
@@ -108,7 +76,7 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
     >>> check_plausible("temperature", np.array([298.0, 290.0]), "degC", lambda level: f"a.csv, line {level + 2}")
     Traceback (most recent call last):
     atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC does not occur in the atmosphere and looks
-    like K: write "temperature [K]" or give units={"temperature": "K"}.
+    like K: name its unit, as in "temperature [K]".
     """
     measure = QUANTITIES[quantity]
     known = known_unit(unit) or Unit(measure.si)
@@ -116,18 +84,16 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
     if wrong is None:
         return
     high_up = quantity == "pressure" and measure.low <= in_si(values, known)[wrong] < _HIGHEST_GROUND
-    ground = " at the ground" if high_up else ""
-    found = f"{values[wrong]:.10g} {shown(unit)}"
-    what = f"{place(wrong)}: a {quantity} of {found}{ground} does not occur in the atmosphere"
+    low, ground = (_HIGHEST_GROUND, " at the ground") if high_up else (measure.low, "")
+    what = (
+        f"{place(wrong)}: a {quantity} of {values[wrong]:.10g} {shown(unit)}{ground} does not occur in the atmosphere"
+    )
     for other in measure.units:
         candidate = known_unit(other)
         if candidate and candidate != known and _first_implausible(quantity, values, candidate) is None:
-            fix = f'write "{quantity} [{other}]" or give units={{"{quantity}": "{other}"}}'
-            raise SoundingError(f"{what} and looks like {other}: {fix}.")
-    low, high = (f"{(limit - known.offset) * known.down / known.up:.6g}" for limit in (measure.low, measure.high))
-    if ground:
-        low = f"{_HIGHEST_GROUND * known.down / known.up:.6g}"
-    raise SoundingError(f"{what} ({low} to {high} {shown(unit)}): correct it, or write -9999 where it is missing.")
+            raise SoundingError(f'{what} and looks like {other}: name its unit, as in "{quantity} [{other}]".')
+    ends = " to ".join(f"{(limit - known.offset) * known.down / known.up:.6g}" for limit in (low, measure.high))
+    raise SoundingError(f"{what} ({ends} {shown(unit)}): correct it, or write -9999 where it is missing.")
 
 
 def widest_gap(pressure: Floats) -> tuple[float, int]:
@@ -181,38 +147,31 @@ def doubts(pressure: Floats, temperature: Floats) -> list[str]:
     """
     found = []
     lifted = temperature[:-1] * (pressure[1:] / pressure[:-1]) ** (2.0 / 7.0)
-    steep = lifted - temperature[1:]
-    warmer = np.diff(temperature)
-    for i in range(len(steep)):
+    for i, steep in enumerate(lifted - temperature[1:]):
         ends = f"From {pressure[i] / 100:.6g} to {pressure[i + 1] / 100:.6g} hPa"
         limit = STEEPEST_AT_GROUND if pressure[i + 1] >= pressure[0] - _GROUND_LAYER else STEEPEST
-        if steep[i] > limit:
-            found.append(
-                f"{ends} the air is {steep[i]:.3g} K colder than along the dry adiabat, more than {limit:.3g} K."
-            )
+        if steep > limit:
+            found.append(f"{ends} the air is {steep:.3g} K colder than along the dry adiabat, more than {limit:.3g} K.")
         aloft = _STRATOSPHERE <= pressure[i + 1] < pressure[0] - _LOWEST_LAYER
-        if aloft and warmer[i] > STRONGEST_INVERSION:
-            found.append(f"{ends} the temperature rises by {warmer[i]:.3g} K, more than {STRONGEST_INVERSION:.3g} K.")
+        warmer = temperature[i + 1] - temperature[i]
+        if aloft and warmer > STRONGEST_INVERSION:
+            found.append(f"{ends} the temperature rises by {warmer:.3g} K, more than {STRONGEST_INVERSION:.3g} K.")
     gap, below = widest_gap(pressure)
     if gap > DOUBTFUL_GAP:
         ends = f"{pressure[below] / 100:.6g} and {pressure[below + 1] / 100:.6g} hPa"
         found.append(f"Between {ends} there is no level: {gap / 100:.4g} hPa, more than {DOUBTFUL_GAP / 100:.3g} hPa.")
-    if pressure[-1] > LOWEST_TOP:
-        found.append(
-            f"The sounding ends at {pressure[-1] / 100:.6g} hPa, below the {LOWEST_TOP / 100:.3g} hPa surface."
-        )
+    if (top := pressure[-1]) > LOWEST_TOP:
+        found.append(f"The sounding ends at {top / 100:.6g} hPa, below the {LOWEST_TOP / 100:.3g} hPa surface.")
     return found
 
 
-def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, height: Floats | None, place: Place) -> None:
+def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, place: Place) -> None:
     """Refuse levels that do not make an ascent.
 
     Parameters
     ----------
     pressure, temperature, dewpoint : (level,)
         The levels from the ground up, complete [Pa, K, K].
-    height : (level,)
-        Height, or None [m].
     place
         Function that returns the place of a level in the file.
 
@@ -220,66 +179,31 @@ def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, height
     ------
     SoundingError
         If there are fewer than five levels, if the pressure does not decrease from each to the next, if a dewpoint is
-        above its temperature, if there is a gap of more than 250 hPa below the 300 hPa surface, if heights do not
-        increase, or if they differ from those of the pressures by more than 10 %.
+        above its temperature, or if there is a gap of more than 250 hPa below the 300 hPa surface.
 
     Examples
     --------
     >>> p = np.array([1000e2, 900e2, 950e2, 700e2, 500e2])
-    >>> check_levels(p, np.full(5, 280.0), np.full(5, 270.0), None, lambda level: f"a.csv, line {level + 2}")
+    >>> check_levels(p, np.full(5, 280.0), np.full(5, 270.0), lambda level: f"a.csv, line {level + 2}")
     Traceback (most recent call last):
     atmosbox.errors.SoundingError: a.csv, line 4: the pressure of 950 hPa is not below the 900 hPa of the level
-    before it: put the levels in their order from the ground up.
+    before it: put the levels in order, ground first.
     """
-    count = pressure.size
+    count, hpa = pressure.size, pressure / 100
     if count < FEWEST_LEVELS:
         where = place(count - 1)
         raise SoundingError(f"{where}: the sounding ends after {count} of at least {FEWEST_LEVELS} levels: add more.")
-    if (rising := np.flatnonzero(np.diff(pressure) >= 0.0)).size:
-        i = int(rising[0]) + 1
+    for i in np.flatnonzero(np.diff(pressure) >= 0.0)[:1] + 1:
+        order = f"is not below the {hpa[i - 1]:.10g} hPa of the level before it: put the levels in order, ground first"
         if pressure[i] == pressure[i - 1]:
-            raise SoundingError(
-                f"{place(i)}: the pressure of {pressure[i] / 100:.10g} hPa is that of the level before it, whose "
-                "temperature or dewpoint is another: delete one of the two."
-            )
-        raise SoundingError(
-            f"{place(i)}: the pressure of {pressure[i] / 100:.10g} hPa is not below the {pressure[i - 1] / 100:.10g} "
-            "hPa of the level before it: put the levels in their order from the ground up."
-        )
-    if (above := np.flatnonzero(dewpoint > temperature + ROUNDING + 1e-6)).size:
-        i = int(above[0])
+            order = "is that of the level before it, whose temperature or dewpoint is another: delete one of the two"
+        raise SoundingError(f"{place(i)}: the pressure of {hpa[i]:.10g} hPa {order}.")
+    for i in np.flatnonzero(dewpoint > temperature + ROUNDING + 1e-6)[:1]:
         t, td = (round(from_si(float(x[i]), "degC"), 2) for x in (temperature, dewpoint))
-        raise SoundingError(
-            f"{place(i)}: the dewpoint of {td:g} degC is above the temperature of {t:g} degC: correct one, or write "
-            "-9999 for it."
-        )
+        what = f"{place(i)}: the dewpoint of {td:g} degC is above the temperature of {t:g} degC"
+        raise SoundingError(f"{what}: correct one, or write -9999 for it.")
     gap, i = widest_gap(pressure)
     if gap > LARGEST_GAP:
-        raise SoundingError(
-            f"{place(i + 1)}: below the pressure of {pressure[i + 1] / 100:.6g} hPa there is a gap of {gap / 100:.6g} "
-            f"hPa, but at most {LARGEST_GAP / 100:.0f} hPa may lie between two levels: add levels."
-        )
-    if height is not None:
-        _check_height(pressure, temperature, height, place)
-
-
-def _check_height(pressure: Floats, temperature: Floats, height: Floats, place: Place) -> None:
-    """Refuse heights that do not increase, or that do not fit the pressures."""
-    fix = "correct it, or leave the heights out"
-    if (falling := np.flatnonzero(np.diff(height) <= 0.0)).size:
-        i = int(falling[0]) + 1
-        raise SoundingError(
-            f"{place(i)}: the height of {height[i]:.10g} m is not above the {height[i - 1]:.10g} m of the level before "
-            f"it: {fix}."
-        )
-    mean = (temperature[1:] + temperature[:-1]) / 2
-    scale = GAS_CONSTANT / DRY_AIR.molar_mass / STANDARD_GRAVITY
-    thickness = float(scale * np.sum(mean * np.log(pressure[:-1] / pressure[1:])))
-    ratio = float(height[-1] - height[0]) / thickness
-    if abs(ratio - 1.0) > _HEIGHT_ERROR:
-        likely = {"km": 1e-3, "ft": 1 / 0.3048, "m2 s-2 (a geopotential)": STANDARD_GRAVITY}
-        looks = next((f" and look like {unit}" for unit, r in likely.items() if abs(ratio / r - 1) < 0.1), "")
-        raise SoundingError(
-            f"{place(pressure.size - 1)}: the {height[-1] - height[0]:.6g} m from the lowest level to the highest "
-            f"are not the {thickness:.5g} m that lie between their pressures{looks}: {fix}."
-        )
+        what = f"below the pressure of {hpa[i + 1]:.6g} hPa there is a gap of {gap / 100:.6g} hPa"
+        most = f"at most {LARGEST_GAP / 100:.0f} hPa may lie between two levels"
+        raise SoundingError(f"{place(i + 1)}: {what}, but {most}: add levels.")

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import from_si
-from atmosbox.scene.sounding.column import QUANTITIES, REQUIRED
+from atmosbox.scene.sounding.column import QUANTITIES
 from atmosbox.scene.sounding.plausibility import check_levels, check_plausible, doubts
 
 __all__ = ["Sounding"]
@@ -30,14 +30,14 @@ class Sounding:
     dewpoint : (level,)
         Dewpoint with respect to liquid water, not above the temperature; if rounding has put it up to 0.05 K above the
         temperature, it is set to the temperature [K].
-    height : (level,)
-        Geopotential height above sea level, or above the zero of the source; None if the source has none [m].
     name
         The name of the ascent.
     source
         Where it comes from: the file and its format, or the paper.
     remarks
         What reading has left out or filled in, one sentence each.
+    places
+        The place of each level in its file, for messages; its number if there is none.
 
     Raises
     ------
@@ -59,13 +59,13 @@ class Sounding:
     pressure: Floats
     temperature: Floats
     dewpoint: Floats
-    height: Floats | None = None
     name: str = "sounding"
     source: str = ""
     remarks: tuple[str, ...] = ()
+    places: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        columns = {name: self._column(name, value) for name in QUANTITIES if (value := getattr(self, name)) is not None}
+        columns = {name: self._column(name, getattr(self, name)) for name in QUANTITIES}
         for name, column in columns.items():
             if column.size != columns["pressure"].size:
                 raise SoundingError(
@@ -73,8 +73,8 @@ class Sounding:
                     "pressure: give one of each for every level."
                 )
             check_plausible(name, column, QUANTITIES[name].si, self._place)
-        pressure, temperature, dewpoint = (columns[name] for name in REQUIRED)
-        check_levels(pressure, temperature, dewpoint, columns.get("height"), self._place)
+        pressure, temperature, dewpoint = columns.values()
+        check_levels(pressure, temperature, dewpoint, self._place)
         columns["dewpoint"] = np.minimum(columns["dewpoint"], columns["temperature"])
         for name, column in columns.items():
             column.setflags(write=False)
@@ -86,14 +86,14 @@ class Sounding:
         return tuple(doubts(self.pressure, self.temperature))
 
     def _place(self, level: int) -> str:
-        return f"{shown(self.name)}, level {level + 1}"
+        return self.places[level] if self.places else f"{shown(self.name)}, level {level + 1}"
 
     def _column(self, name: str, values: ArrayLike) -> Floats:
         """Return a copy of a column, or raise SoundingError if it is not a row of finite numbers."""
         try:
             column = np.array(values, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
-            raise SoundingError(f"{shown(self.name)}: the {name} is not a row of numbers: give a list.") from None
+            column = np.zeros(0)
         if column.ndim != 1 or not column.size:
             raise SoundingError(f"{shown(self.name)}: the {name} is not a row of numbers: give a list.")
         if (odd := np.flatnonzero(~np.isfinite(column))).size:

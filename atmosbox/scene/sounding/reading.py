@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from atmosbox.errors import FileError, SoundingError, shown
-from atmosbox.scene.sounding import bufkit, delimited, igra, profile_netcdf, sharppy, wyoming
-from atmosbox.scene.sounding.column import asked_units
+from atmosbox.scene.sounding.formats import FORMATS, Text
+from atmosbox.scene.sounding.netcdf import SIGNATURES, profile
 from atmosbox.scene.sounding.profile import Sounding
-from atmosbox.scene.sounding.tabulated import Table, sounding_of
+from atmosbox.scene.sounding.table import Table, sounding_of
 
 __all__ = ["LARGEST_FILE", "MOST_LINES", "read"]
 
@@ -31,25 +29,22 @@ _MARKS = {
 }
 
 
-def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -> Sounding:
+def read(path: str | os.PathLike[str]) -> Sounding:
     r"""Return the sounding in a file, from the ground up.
 
-    The format is recognised by the content: a table of the University of Wyoming, as text or as its web page; a file of
-    IGRA, version 2, or of BUFKIT, of which the first sounding is read; SHARPpy's text; a table with named columns
-    (CSV); netCDF with variables as users of MetPy name them.
+    The format is recognised by the content: a table of the University of Wyoming, as text, as its web page or as CSV; a
+    file of IGRA, version 2, or of BUFKIT, of which the first sounding is read; SHARPpy's text; a table with named
+    columns (CSV); netCDF with variables as users of MetPy name them.
 
     Parameters
     ----------
     path
         The file.
-    units
-        Units of ``pressure``, ``temperature``, ``dewpoint`` and ``height``, for a file that states none or wrong ones;
-        they override those of the file.
 
     Returns
     -------
     Sounding
-        The ascent. See :func:`atmosbox.scene.sounding.tabulated.sounding_of` for the treatment of missing values.
+        The ascent. See :func:`atmosbox.scene.sounding.table.sounding_of` for the treatment of missing values.
 
     Raises
     ------
@@ -58,8 +53,6 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
     SoundingError
         If it is empty or has more than 100 000 lines, is in no known format, lacks a column or a unit, or if its
         levels do not make an ascent.
-    UnitError
-        If `units` names another column, or a unit of another quantity.
 
     Examples
     --------
@@ -70,16 +63,14 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
     ...     read(Path(folder, "oslo.csv"))
     <Sounding oslo: 5 levels from 1000 hPa, 25.00 degC to 300 hPa, -40.00 degC>
     """
-    asked = asked_units(units)
     source = Path(path)
     file = shown(os.fspath(source), 200)
     content = _content(source, file)
-    stem = source.stem
-    if profile_netcdf.recognised(content[:8]):
-        table = profile_netcdf.parse(source, file, stem)
+    if content.startswith(SIGNATURES):
+        table = profile(source, file, source.stem)
     else:
-        table = _parsed(re.split(r"\r\n|\r|\n", _text(content, file)), file, stem)
-    return sounding_of(replace(table, units={**table.units, **asked}))
+        table = _parsed(Text(re.split(r"\r\n|\r|\n", _decoded(content, file)), file, source.stem))
+    return sounding_of(table)
 
 
 def _content(source: Path, file: str) -> bytes:
@@ -88,15 +79,12 @@ def _content(source: Path, file: str) -> bytes:
         raise FileError(f"{file} is a folder: give a file in it.")
     if not os.path.exists(source):
         raise FileError(f"{file} does not exist: check the name and the folder.")
-    if not os.path.isfile(source) or not os.access(source, os.R_OK):
-        raise FileError(f"{file} may not be read: check what ls -l says of it.")
+    if not os.path.isfile(source):
+        raise FileError(f"{file} may not be read: give an ordinary file.")
+    if (size := os.path.getsize(source)) > LARGEST_FILE:
+        raise FileError(f"{file} has {size / 1e6:.0f} MB, far more than a sounding: {_FIX}.")
     try:
-        size = os.path.getsize(source)
-        if size > LARGEST_FILE:
-            raise FileError(f"{file} has {size / 1e6:.0f} MB, far more than a sounding: {_FIX}.")
         content = source.read_bytes()
-    except FileError:
-        raise
     except OSError as error:
         raise FileError(f"{file} may not be read ({error.strerror or error}): check what ls -l says of it.") from error
     if not content.strip():
@@ -104,40 +92,31 @@ def _content(source: Path, file: str) -> bytes:
     return content
 
 
-def _text(content: bytes, file: str) -> str:
+def _decoded(content: bytes, file: str) -> str:
     """Return the text of a file, in UTF-8 or else latin-1, or in UTF-16 if it begins with its mark."""
     for mark, problem in _MARKS.items():
         if content.startswith(mark):
             raise SoundingError(f"{file} {problem}.")
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        try:
-            return content.decode("utf-16")
-        except UnicodeDecodeError:
-            raise SoundingError(f"{file} is not a text: {_FIX}.") from None
-    if _BINARY.search(content):
+    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if not wide and _BINARY.search(content):
         raise SoundingError(f"{file} is not a text: {_FIX}.")
     try:
-        return content.decode("utf-8-sig")
+        return content.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
+        if wide:
+            raise SoundingError(f"{file} is not a text: {_FIX}.") from None
         return content.decode("latin-1")
 
 
-def _parsed(lines: list[str], file: str, name: str) -> Table:
+def _parsed(text: Text) -> Table:
     """Return the columns of a text in any of the formats."""
-    if len(lines) > MOST_LINES:
-        raise SoundingError(f"{file} has {len(lines)} lines, far more than a sounding: {_FIX}.")
-    if igra.recognised(lines):
-        return igra.parse(lines, file, name)
-    if bufkit.recognised(lines):
-        return bufkit.parse(lines, file, name)
-    if sharppy.recognised(lines):
-        return sharppy.parse(lines, file, name)
-    if wyoming.recognised(lines):
-        return wyoming.parse(lines, file, name)
-    if delimited.recognised(lines):
-        return delimited.parse(lines, file, name)
-    first, line = next(((i, line) for i, line in enumerate(lines) if line.strip()), (0, ""))
+    if len(text.lines) > MOST_LINES:
+        raise SoundingError(f"{text.file} has {len(text.lines)} lines, far more than a sounding: {_FIX}.")
+    for parse in FORMATS:
+        if (table := parse(text)) is not None:
+            return table
+    first, line = next(((i, line) for i, line in enumerate(text.lines) if line.strip()), (0, ""))
     raise SoundingError(
-        f"{file}, line {first + 1}: {shown(line.strip())} begins no sounding that is known: name the columns, as in "
+        f"{text.place(first)}: {shown(line.strip())} begins no sounding that is known: name the columns, as in "
         "pressure [hPa],temperature [degC],dewpoint [degC]."
     )

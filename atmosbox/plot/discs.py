@@ -2,24 +2,158 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import LogNorm, to_rgb
+from matplotlib.colors import Normalize, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from atmosbox.plot.plane import Discs, colour_scale, discs
+from atmosbox.plot.curve import read
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, Theme
-from atmosbox.plot.tick import put_ticks
-from atmosbox.plot.unit import spelled
+from atmosbox.plot.units import convert, spelled
 from atmosbox.scene.panels import Panel
 
-# Greatest width of the rim of a heavy disc, in diameters; approximate height of the box, in heights of the figure.
-_BROADEST_RIM, _BOX_HEIGHT = 0.12, 0.6
+_FAST = 5.0
+"""Discs more than this many times as fast as the median disc have the colour of the fastest."""
+
+
+class Discs(NamedTuple):
+    """The discs of a planar scene: their position and speed in every frame, their diameter and mass."""
+
+    place: NDArray[np.float64]
+    """Positions, (frame, molecule, 2), in the unit of length that is shown."""
+    speed: NDArray[np.float64]
+    """Speeds, (frame, molecule), in the unit ``speed_unit``."""
+    diameter: NDArray[np.float64]
+    """Diameters, (molecule,), in the unit of length that is shown."""
+    mass: NDArray[np.float64]
+    """Masses, (molecule,), in the unit of the file."""
+    box: NDArray[np.float64]
+    """The lower and the upper corner of the box, (2, 2), in the unit of length that is shown."""
+    speed_unit: str
+    """The unit of the speeds, that of the file."""
+
+    @property
+    def heavy(self) -> NDArray[np.bool_]:
+        """Which discs belong to the heavier half; none if all masses are equal."""
+        heavy = np.zeros(self.mass.size, dtype=bool)
+        if self.mass.size and self.mass.min() < self.mass.max():
+            heavy[np.argsort(self.mass, kind="stable")[self.mass.size // 2 :]] = True
+        return heavy
+
+
+def discs(dataset: xr.Dataset, unit: str) -> Discs:
+    """Return the discs of a planar scene.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, as `draw_discs` takes it.
+    unit : str
+        The unit of length to show.
+
+    Returns
+    -------
+    Discs
+        The discs.
+
+    Raises
+    ------
+    FileError
+        If the file lacks one of the variables.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> discs(xr.Dataset(), "m")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The file has no variable 'disc_position', which its figure needs: run the scene again \
+with this version of atmosbox.
+    """
+    position, velocity = (
+        read(dataset, name).transpose("elapsed_time", "molecule", "axis") for name in ("disc_position", "disc_velocity")
+    )
+    plane = _plane(position.values)
+    places = convert(position.values[:, :, plane], str(position.attrs.get("units", "m")), unit, name="disc_position")
+    diameter = read(dataset, "disc_diameter")
+    sizes = convert(diameter.values, str(diameter.attrs.get("units", "m")), unit, name="disc_diameter")
+    length = read(dataset, "box_length")
+    ends = convert(length.values, str(length.attrs.get("units", "m")), unit, name="box_length")
+    return Discs(
+        places,
+        np.linalg.norm(velocity.values, axis=2),
+        sizes,
+        read(dataset, "disc_mass").values,
+        np.stack((np.zeros(2), ends[plane] if ends.ndim else np.full(2, ends))),
+        str(velocity.attrs.get("units", "m s-1")),
+    )
+
+
+def axis_names(dataset: xr.Dataset) -> tuple[str, str]:
+    """Return the names of the two axes of a planar scene.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+
+    Returns
+    -------
+    tuple of str
+        The two axes along which the molecules move.
+
+    Raises
+    ------
+    FileError
+        If the file holds no positions of discs.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> places = [[[0.0, 7.0, 1.0], [1.0, 7.0, 0.0]]]
+    >>> axis_names(xr.Dataset({"disc_position": (("elapsed_time", "molecule", "axis"), places)}))
+    ('x', 'z')
+    """
+    position = read(dataset, "disc_position").transpose("elapsed_time", "molecule", "axis")
+    first, second = _plane(position.values)
+    return "xyz"[first], "xyz"[second]
+
+
+def colour_scale(speed: NDArray[np.float64]) -> Normalize:
+    """Return the colour scale of speeds, from zero to a round number that few exceed.
+
+    Parameters
+    ----------
+    speed : ndarray
+        All speeds that are to be shown, in any shape and unit.
+
+    Returns
+    -------
+    matplotlib.colors.Normalize
+        The scale.
+
+    Examples
+    --------
+    >>> colour_scale(np.linspace(0.0, 900.0, 100)).vmax
+    1000.0
+    """
+    moving = speed[speed > 0.0]
+    high = min(np.percentile(moving, 97), _FAST * np.median(moving)) if moving.size else 1.0
+    return Normalize(0.0, float(MaxNLocator(4).tick_values(0.0, high)[-1]))
+
+
+def _plane(position: NDArray[np.float64]) -> list[int]:
+    """Return the two axes along which the positions (time, molecule, axis) spread most, in order."""
+    spread = np.nanmax(position, axis=(0, 1)) - np.nanmin(position, axis=(0, 1))
+    return sorted(int(axis) for axis in np.argsort(-spread, kind="stable")[:2])
+
+
 # Greatest number of frames of a trail, and of segments of all trails. A molecule has no trail if its median step from
 # frame to frame is longer than this share of the box.
 _TRAIL_FRAMES = 12
@@ -39,7 +173,7 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
     dataset : xarray.Dataset
         The run, with ``disc_position`` and ``disc_velocity`` (elapsed_time, molecule, axis),
         ``disc_diameter`` and ``disc_mass`` (molecule). The box reaches from 0 to ``box_length``, one number
-        or one for each axis; without that variable it is the smallest box around the discs of all frames.
+        or one for each axis.
     theme : Theme
         The theme: sizes of type, lines and markers.
 
@@ -66,6 +200,7 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
     ...         "disc_velocity": (*place[:2], {"units": "m s-1"}),
     ...         "disc_diameter": size,
     ...         "disc_mass": ("molecule", [1.0, 4.0], {"units": "kg"}),
+    ...         "box_length": ((), 4e-9, {"units": "m"}),
     ...     }
     ... )
     >>> axes = Figure().add_subplot()
@@ -77,13 +212,8 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
     if trail is not None:
         axes.add_collection(trail)
     drawn = put_discs(axes, found, theme)
-    log = isinstance(drawn.norm, LogNorm)
-    bar = axes.figure.colorbar(drawn, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="both" if log else "max")
+    bar = axes.figure.colorbar(drawn, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="max", ticks=MaxNLocator(4))
     bar.set_label(f"speed ({spelled(found.speed_unit)})")
-    if log:
-        put_ticks(bar.ax.yaxis, log=True, length=10.0 * theme.text, size=theme.text)
-    else:
-        bar.locator = MaxNLocator(4)
     return _entries(found.heavy, found.mass, theme)
 
 
@@ -113,6 +243,8 @@ def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
     [[1.0, 1.0]]
     """
     norm = colour_scale(found.speed)
+    # a rim must not hide the colour of a small disc
+    rim = min(0.8, 15.0 * float(np.median(found.diameter) / np.ptp(found.box)))
     drawn = EllipseCollection(
         found.diameter,
         found.diameter,
@@ -123,8 +255,7 @@ def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
         cmap=FIELD_COLOURS,
         norm=norm,
         edgecolors=DARK,
-        linewidths=np.minimum(_rims(axes, found.diameter, found.box), theme.line)
-        * np.where(found.heavy, 1.0, 1.0 / 3.0),
+        linewidths=theme.line * np.where(found.heavy, rim, rim / 3.0),
         zorder=3.0,
     )
     drawn.set_array(found.speed[-1])
@@ -173,13 +304,6 @@ def trails(places: NDArray[np.float64], box: NDArray[np.float64], theme: Theme) 
     alpha = np.repeat(np.linspace(0.1, 0.8, frames), path.shape[1])
     colours = np.column_stack((np.tile(to_rgb(FAINT), (alpha.size, 1)), alpha))
     return LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0)
-
-
-def _rims(axes: Axes, sizes: NDArray[np.float64], box: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the greatest width of each disc's rim [pt], so that rims do not hide the colours of small discs."""
-    drawing = axes.get_figure(root=True)
-    height = 72.0 * drawing.get_figheight() if drawing else 0.0
-    return _BROADEST_RIM * _BOX_HEIGHT * height * sizes / float(np.max(box[1] - box[0]))
 
 
 def _ratio(value: float) -> str:

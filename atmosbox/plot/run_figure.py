@@ -1,0 +1,305 @@
+"""The figure of a run: its panels, its title and its provenance on one page; with its box above them if wanted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+
+from atmosbox.errors import FileError
+from atmosbox.file.molecules import Molecules, molecules
+from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
+from atmosbox.plot.caption import footer, headlines
+from atmosbox.plot.curve import curve, unit_of
+from atmosbox.plot.draw import Entry, draw, hollow_points
+from atmosbox.plot.flow_picture import flow_height, put_flow
+from atmosbox.plot.layout import Draw, Pen, blank, page, put_footer, put_heading, put_numbers, put_panels, settle
+from atmosbox.plot.skewt import BACKGROUND, draw_skewt
+from atmosbox.plot.theme import Theme, find, style
+from atmosbox.plot.units import spelled
+from atmosbox.scene.panels import Line, Panel, from_json
+
+
+def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
+    """Draw the figure of a run.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run as atmosbox returns or saves it, in SI units; it is not changed. Its attribute
+        ``atmosbox_panels`` lists the panels to draw.
+    theme : {"notes", "slides"}
+        A figure for a page, or one for a screen of 16:9 with large type.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure. It opens no window; a notebook shows it.
+
+    Raises
+    ------
+    FileError
+        If the dataset carries no panels or lacks a variable that they show.
+    SettingError
+        If there is no such theme.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.scene.panels import Line, to_json
+    >>> air = Line("elapsed_time", "air_temperature", "air")
+    >>> panel = Panel("line", "Temperature", (air,), "time", "temperature", y_unit="degC")
+    >>> dataset = xr.Dataset(
+    ...     {"air_temperature": ("elapsed_time", [288.0, 290.0], {"units": "K"})},
+    ...     coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
+    ...     attrs={"atmosbox_panels": to_json([panel])},
+    ... )
+    >>> axes = figure(dataset).axes[0]
+    >>> axes.get_xlabel(), axes.get_ylabel()
+    ('time (ns)', 'temperature (°C)')
+    """
+    look = find(theme)
+    panels = panels_of(dataset)
+    heading = str(dataset.attrs.get("title", "")) if look.heading else ""
+    small = footer(dataset) + explanation(dataset, panels)
+    readings = [reading for each in headlines(dataset, panels) for reading in each]
+    height = flow_height(dataset, look)
+    if height and not look.grows:  # a slide has no room for more below the pictures of the wind
+        panels, readings = panels[:2], []
+    put = partial(put_flow, dataset, look) if height else None
+    return page(panels, look, dataset, painter(dataset, look), readings, small, heading, height, put)
+
+
+def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = None) -> Draw:
+    """Return the function that draws a panel of a run at its place.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    look : Theme
+        The theme: sizes of type, lines and markers.
+    only : tuple of Line, optional
+        The lines to draw; by default all.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> drawing, panel = Figure(), Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa")
+    >>> axes, _ = painter(dataset, find("notes"))(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
+    >>> axes.lines[0].get_xdata().tolist()
+    [1000.0, 900.0]
+    """
+
+    def draw_panel(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
+        if panel.kind == "skewt":
+            return draw_skewt(drawing, spot, panel, dataset, look, only)
+        axes = drawing.add_subplot(spot, sharex=above)
+        return axes, draw(axes, panel, dataset, look, only)
+
+    return draw_panel
+
+
+def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
+    """Return the text of the footer that explains error bars, hollow points and the background of a skew-T.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    panels : tuple of Panel
+        The panels that are drawn.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> explanation(xr.Dataset(), (Panel("discs", "The box"),))
+    ''
+    """
+    has_errors = any(line.error for panel in panels for line in panel.lines)
+    has_hollow = any(
+        hollow_points(curve(dataset, panel, line)).any()
+        for panel in panels
+        for line in panel.lines
+        if line.role == "data" and panel.kind != "histogram"
+    )
+    along = " and ".join(dict.fromkeys(panel.x_label or "x" for panel in panels if panel.averages))
+    small = f" · against {along}: averages of frames, ± 1 standard deviation of single frames" if along else ""
+    if has_errors:
+        small += f" · {'other ' if along else ''}bars and bands: ± 1 standard error"
+        small += ", hollow: not known" if has_hollow else ""
+    return small + (f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else "")
+
+
+def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
+    """Return the panels that a run lists, without the theory curves of headlines that it did not measure.
+
+    Of a run that was stopped, only panels and curves are returned for which it has measured enough.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+
+    Raises
+    ------
+    FileError
+        If the dataset lists no panels, its list cannot be read, or the run was stopped too early for all of them.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.scene.panels import to_json
+    >>> [panel.title for panel in panels_of(xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])}))]
+    ['A box']
+    """
+    if "atmosbox_panels" not in dataset.attrs:
+        raise FileError("The file does not say what its figure shows: it was not written by atmosbox run.")
+    try:
+        panels = from_json(dataset.attrs["atmosbox_panels"])
+    except ValueError as error:
+        raise FileError(f"The file does not say what its figure shows, because {error}") from error
+    if not panels:
+        raise FileError("The file has no figure: its scene names no panels.")
+    if dataset.attrs.get("atmosbox_status", "complete") != "complete":
+        panels = tuple(begun for panel in panels if (begun := _begun(dataset, panel)) is not None)
+        if not panels:
+            raise FileError("The run was stopped too early for a figure: let it go on with atmosbox run --resume.")
+    return tuple(replace(panel, lines=_found(dataset, panel)) for panel in panels)
+
+
+def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
+    """Return a panel of a run that was stopped, with the curves that it has; None if none of them is measured."""
+
+    def held(names: tuple[str, ...]) -> bool:
+        return all(name.partition("[")[0] in dataset.variables for name in names)
+
+    if not panel.lines:
+        return panel if held(panel.variables) else None
+    lines = tuple(line for line in panel.lines if held(line.variables))
+    return replace(panel, lines=lines) if any(line.role == "data" for line in lines) else None
+
+
+def _known(dataset: xr.Dataset, name: str) -> bool:
+    """Tell whether a variable has a value, or is not in the file, which `draw` tells."""
+    return name not in dataset or bool(dataset[name].notnull().any())
+
+
+def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
+    """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
+    missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
+    # nor theory that is known nowhere, such as the growth of rolls of discs
+    missing |= {line.y for line in panel.lines if line.role == "theory" and not _known(dataset, line.y)}
+    return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))
+
+
+_INSTANTS = (0.0, 0.5, 1.0)  # as shares of the duration of the run
+_BAR = 0.105  # width of the colour bar with its numbers, in widths of the page
+_HIGH = 0.36  # height of the boxes, in widths of the page
+_HIGH_ON_SCREEN = 0.4  # height of the boxes, in heights of a page that cannot grow
+
+
+def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
+    """Draw the box of a run at the start, half-way and at the end, and below it the panels of its scene.
+
+    A slide has room for the first panel only, or for two profiles.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A run with ``--save-molecules``, or one of a planar scene.
+    theme : {"notes", "slides"}
+        A figure for a page, or one for a screen of 16:9 with large type.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    FileError
+        If the file holds no molecules, no panels, or lacks a variable that they show.
+    SettingError
+        If there is no such theme.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> figure_with_box(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "lifting-dry"}'}))
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run lifting-dry --save-molecules.
+    """
+    look, held = find(theme), molecules(dataset)
+    panels = tuple(panel for panel in panels_of(dataset) if panel.kind != "discs")
+    readings = [reading for each in headlines(dataset, panels) for reading in each]
+    if not look.grows:  # a slide has no room for more below the boxes
+        panels = panels[: 2 if all(panel.kind == "profile" for panel in panels[:2]) else 1]
+    with style(look):
+        wide, high = (72.0 * size for size in look.wide)  # pt
+        boxes = _HIGH * wide if look.grows else _HIGH_ON_SCREEN * high
+        drawing = blank(look.wide, look)
+        pen = Pen(drawing)
+        top = put_heading(pen, str(dataset.attrs.get("title", "")) if look.heading else "", look)
+        top += put_numbers(pen, readings, look, top)
+        if look.grows:
+            drawing.set_figheight((high + top + boxes) / 72.0)
+        each = (1.0 - _BAR) / len(_INSTANTS)
+        spots = [(place * each, 0.5, 0.96 * each, 0.1) for place in range(len(_INSTANTS))]
+        pictures = [box_picture(drawing.add_axes(spot), dataset, held, look) for spot in spots]
+        plates = put_panels(drawing, panels, look, dataset, painter(dataset, look))
+        words = " · ".join([footer(dataset), *pictures[0].legend()])
+        put_footer(pen, words + explanation(dataset, panels), look)
+        settle(pen, plates, look, top + boxes)
+        _put_boxes(pen, dataset, held, pictures, (top, top + boxes), look)
+    return drawing
+
+
+def _put_boxes(
+    pen: Pen,
+    dataset: xr.Dataset,
+    held: Molecules,
+    pictures: list[BoxPicture | PlanarPicture],
+    room: tuple[float, float],
+    look: Theme,
+) -> None:
+    """Draw the box at each instant with its time above it, and the colour bar to the right of all boxes.
+
+    ``room`` gives the distances of the upper and of the lower end of this row from the upper end of the page [pt].
+    """
+    high = 72.0 * float(pen.figure.get_figheight())
+    each, top = (1.0 - _BAR) / len(pictures), 1.0 - (room[0] + 0.5 * look.text) / high
+    frames = [round(part * (len(held.time) - 1)) for part in _INSTANTS]
+    said = [_said(dataset, held, moment) for moment in frames]
+    lines = max(text.count("\n") for text in said) + 1
+    bottom = 1.0 - (room[1] - 2.2 * look.small) / high
+    below = top - (1.35 * lines + 0.3) * look.text / high
+    for place, (picture, moment, text) in enumerate(zip(pictures, frames, said, strict=True)):
+        left = place * each
+        pen.figure.text(left + each / 2, top, text, fontsize=look.text, ha="center", va="top").set_in_layout(False)
+        picture.axes.set_position((left + 0.05 * each, bottom, 0.9 * each, below - bottom))
+        picture.fit()
+        picture.artists(moment)
+    speed_bar(pen.figure, pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
+
+
+def _said(dataset: xr.Dataset, held: Molecules, moment: int) -> str:
+    """Return the time of a frame and, if a panel shows a profile measured frame by frame, its values in the frame."""
+    time = instant(dataset, held, moment)
+    for panel in panels_of(dataset):
+        for line in panel.lines:
+            in_time = all(name in dataset and dataset[name].dims == ("elapsed_time",) for name in (line.x, line.y))
+            if panel.kind not in ("profile", "skewt") or line.role != "data" or line.minus or not in_time:
+                continue
+            x, y, _ = curve(dataset, panel, line)
+            if x.size == len(held.time) and np.isfinite(x[moment] + y[moment]):
+                units = [spelled(unit_of(dataset, panel, axis)) for axis in "xy"]
+                state = [f"{value:.{int(abs(value) < 100.0)}f}" for value in (x[moment], y[moment])]
+                return f"{time}\n{state[0]} {units[0]},  {state[1]} {units[1]}".replace("-", "−")
+    return time
