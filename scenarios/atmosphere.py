@@ -42,7 +42,7 @@ from atmosbox.engine import (
     maxwell_velocities,
     rotational_energies,
 )
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -187,9 +187,11 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a column that cannot be stirred, and discs that rotate."""
         if self.stirring and self.plane:
-            raise SettingError("stirring", self.stirring, "is for air in space, not in a plane", "give --set plane=off")
+            raise SettingError(
+                "stirring", self.stirring, "is for air in space, not in a plane", Setting("plane", False)
+            )
         if self.plane and self.rotation:
-            raise SettingError("rotation", True, "is not for the discs of a plane", "give --set rotation=off")
+            raise SettingError("rotation", True, "is not for the discs of a plane", Setting("rotation", False))
         if not self.stirring:
             return
         if self.floor == "isolated":
@@ -197,12 +199,12 @@ class Settings(SceneSettings):
                 "stirring",
                 self.stirring,
                 "heats the air, and an isolated floor keeps it in",
-                "give --set floor=heat-bath",
+                Setting("floor", "heat-bath"),
             )
         least = math.ceil(10.0 / PARCEL)
         if self.molecules < least:
             raise SettingError(
-                "molecules", self.molecules, "are too few to stir in parcels", f"give --set molecules={least} or more"
+                "molecules", self.molecules, "are too few to stir in parcels", Setting("molecules", least), " or more"
             )
         most = math.floor((1.0 - COLDEST) * self.si.temperature / self.lapse / 100.0) / 10.0
         if self.height > most:
@@ -210,7 +212,8 @@ class Settings(SceneSettings):
                 "height",
                 f"{self.height:g} km",
                 "is higher than stirred air reaches",
-                f"give --set height={most:g} or less",
+                Setting("height", f"{most:g}"),
+                " or less",
             )
 
 

@@ -33,7 +33,7 @@ from atmosbox.engine import (
     lattice_positions,
     maxwell_velocities,
 )
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     Clusters,
@@ -107,7 +107,9 @@ class Settings(SceneSettings):
                 "temperature",
                 f"{self.temperature:g} K",
                 f"is too warm for a {self.start} of this {self.substance}",
-                f"give --set temperature={math.floor(most)} or less, or --set start=vapour",
+                Setting("temperature", math.floor(most)),
+                " or less, or ",
+                Setting("start", "vapour"),
             )
         sides, _ = _sides(self)
         if min(sides) < 2.2 * RANGE:
@@ -115,7 +117,8 @@ class Settings(SceneSettings):
                 "molecules",
                 self.molecules,
                 "are too few for a box in which none attracts its own image",
-                "give more of them, or --set start=vapour",
+                "give more of them, or ",
+                Setting("start", "vapour"),
             )
         held = math.prod(sides) * math.pi / 6.0 * law.WELL_CRITICAL_DENSITY * (self.density + self.air)
         if self.start == "vapour" and held > 0.45 * math.prod(sides):

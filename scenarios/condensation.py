@@ -23,7 +23,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     DropSizes,
@@ -93,7 +93,8 @@ class Settings(SceneSettings):
                 "humidity",
                 f"{self.humidity:g} %",
                 f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC",
-                f"give --set humidity={math.floor(100.0 * most)}percent or less",
+                Setting("humidity", f"{math.floor(100.0 * most)}percent"),
+                " or less",
             )
 
 

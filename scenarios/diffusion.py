@@ -23,7 +23,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Periodic, RandomNumbers, Specular, maxwell_velocities
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -90,7 +90,8 @@ class Settings(SceneSettings):
                 "diameter",
                 f"{self.diameter:g} nm",
                 f"is too wide for a gas of {self.pressure:g} hPa",
-                f"give --set diameter={widest:g}nm or less",
+                Setting("diameter", f"{widest:g}nm"),
+                " or less",
             )
         density, side = _box(self)
         path = float(law.mean_free_path(density, 1.0))
@@ -101,7 +102,8 @@ class Settings(SceneSettings):
                 "length",
                 f"{self.length:g} nm",
                 f"is only {paths:.1f} mean free paths long, so that the gases fly through each other",
-                f"give --set length={least}nm or more, or a larger diameter or pressure",
+                Setting("length", f"{least}nm"),
+                " or more, or a larger diameter or pressure",
             )
         if side < 3.0:
             least = math.ceil(self.molecules * (3.0 / side) ** 2)
@@ -109,7 +111,8 @@ class Settings(SceneSettings):
                 "molecules",
                 self.molecules,
                 f"fill a box only {side:.1f} diameters wide",
-                f"give --set molecules={least} or more",
+                Setting("molecules", least),
+                " or more",
             )
 
 

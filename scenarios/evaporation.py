@@ -25,7 +25,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Pool, RandomNumbers
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -95,9 +95,10 @@ class Settings(SceneSettings):
                 "temperature",
                 f"{self.temperature:g} degC",
                 f"makes water boil at {self.pressure:g} hPa, which drives the piston out without end",
-                f"give --set temperature={math.floor(coldest)}degC or less"
+                Setting("temperature", f"{math.floor(coldest)}degC")
                 if coldest >= -60.0
-                else f"give --set pressure={math.ceil(saturated / 100.0)}hPa or more",
+                else Setting("pressure", f"{math.ceil(saturated / 100.0)}hPa"),
+                " or less" if coldest >= -60.0 else " or more",
             )
         most = self.si.pressure / saturated
         if self.si.humidity > 0.95 * most:
@@ -105,7 +106,8 @@ class Settings(SceneSettings):
                 "humidity",
                 f"{self.humidity:g} %",
                 f"is so much vapour that hardly any air is left at {self.pressure:g} hPa and {self.temperature:g} degC",
-                f"give --set humidity={math.floor(95.0 * most)}percent or less",
+                Setting("humidity", f"{math.floor(95.0 * most)}percent"),
+                " or less",
             )
         filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
         if filled > 0.1:
@@ -114,7 +116,8 @@ class Settings(SceneSettings):
                 "diameter",
                 f"{self.diameter:g} nm",
                 f"is too wide for {self.pressure:g} hPa: air must be a gas for its vapour to saturate at e_s",
-                f"give --set diameter={math.floor(100.0 * widest) / 100.0:g}nm or less",
+                Setting("diameter", f"{math.floor(100.0 * widest) / 100.0:g}nm"),
+                " or less",
             )
 
 

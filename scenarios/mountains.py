@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene.ascent import (
     MoistAscent,
@@ -81,7 +81,8 @@ class Settings(SceneSettings):
                 "valley",
                 f"{self.valley:g} km",
                 f"is higher than the lower mountain, {lower:g} km",
-                f"give --set valley={lower:g}km or less",
+                Setting("valley", f"{lower:g}km"),
+                " or less",
             )
         refuse_supersaturation(self.dewpoint, self.temperature)
 

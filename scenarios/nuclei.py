@@ -25,7 +25,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, RandomNumbers, clear_of_drops
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -90,14 +90,15 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a box without drops, so much vapour that no air is left, and drops that fill the box."""
         if not self.salted + self.pure:
-            raise SettingError("salted", self.salted, "and pure = 0 leave no drop to watch", "give --set salted=1")
+            raise SettingError("salted", self.salted, "and pure = 0 leave no drop to watch", Setting("salted", 1))
         most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
         if self.si.humidity > most:
             raise SettingError(
                 "humidity",
                 f"{self.humidity:g} %",
                 f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC",
-                f"give --set humidity={math.floor(100.0 * most)}percent or less",
+                Setting("humidity", f"{math.floor(100.0 * most)}percent"),
+                " or less",
             )
         growth = _growth(self)
         widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
@@ -107,7 +108,8 @@ class Settings(SceneSettings):
                 "drop_size",
                 f"{self.drop_size:g}",
                 f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away",
-                f"give --set drop_size={math.floor(50.0 * gap / widest) / 100.0:g} or less, or fewer drops",
+                Setting("drop_size", math.floor(50.0 * gap / widest) / 100.0),
+                " or less, or fewer drops",
             )
 
 

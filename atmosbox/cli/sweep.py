@@ -19,10 +19,11 @@ from atmosbox.cli.option import (
     Verbose,
     out_option,
     quiet_option,
+    value_of,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
+from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, on_command_line
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -125,13 +126,9 @@ def sweep(
 
 def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
     """Return the whole number that was given for an option."""
-    from atmosbox.scene.parameter import Parameter
+    from atmosbox.scene.settings import Parameter
 
-    try:
-        return int(Parameter(option, "1", 8, low, high, kind="int").parse(text))
-    except SettingError as error:
-        error.fix = error.fix.replace(f"--set {option}=", f"--{option} ")
-        raise
+    return int(value_of(Parameter(option, "1", 8, low, high, kind="int"), text))
 
 
 def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
@@ -238,7 +235,7 @@ def _judge(grid: Plan, swept: Swept, path: Path) -> None:
         )
     if not swept.ledger <= LEDGER_LIMIT:
         if failed is not None:
-            tell(f"error: {failed}")
+            tell(f"error: {failed.said(on_command_line)}")
         raise PhysicsError(
             f"The energy budget of a run of this sweep is off by {swept.ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
             f"see member_ledger in {path}."

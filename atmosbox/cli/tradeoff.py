@@ -11,10 +11,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import AllPanels, Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
+from atmosbox.cli.option import (
+    AllPanels,
+    Force,
+    Json,
+    SceneName,
+    ValuesOfAll,
+    Verbose,
+    out_option,
+    quiet_option,
+    value_of,
+)
 from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
 from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
-from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -52,16 +61,12 @@ def tradeoff(
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
     from atmosbox.plot.tradeoff_choice import recommended
-    from atmosbox.scene.parameter import Parameter
+    from atmosbox.scene.settings import Parameter
     from atmosbox.scene.spelling import assignments
     from atmosbox.trade.tradeoff import KeptRuns, measure
 
-    try:
-        seconds = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(budget))
-        first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int").parse(seed or "1"))
-    except SettingError as error:
-        error.fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
-        raise
+    seconds = float(value_of(Parameter("budget", "s", 60.0, 1.0, 1e6), budget))
+    first = int(value_of(Parameter("seed", "1", 1, 0, 2**62, kind="int"), seed or "1"))
 
     def written(path: Path) -> list[Path]:
         return [path, path.with_suffix(".csv"), path.with_suffix(".png")]

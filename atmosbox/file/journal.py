@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from atmosbox.errors import FileError, shown
+from atmosbox.errors import FileError, Option, shown
 from atmosbox.file.output_lock import hold
 from atmosbox.file.output_path import check_writable, part_path, write_failure
 
@@ -84,7 +84,9 @@ class Journal:
         try:
             if hold(self._file.fileno()) is False:
                 raise FileError(
-                    f"{self.path} is being written by another {kind}: wait for it, or name another file with --out."
+                    f"{self.path} is being written by another {kind}",
+                    "wait for it, or name another file with ",
+                    Option("out"),
                 )
             if not self._recalled(request, force):
                 self._truncate(0)
@@ -144,8 +146,10 @@ class Journal:
             if force or not whole:
                 return False
             raise FileError(
-                f"{self.path} is in the way, and is no journal of a {self._kind}, or a damaged one: move it, or add "
-                "--force to throw it away."
+                f"{self.path} is in the way, and is no journal of a {self._kind}, or a damaged one",
+                "move it, or add ",
+                Option("force", True),
+                " to throw it away",
             ) from None
         if not whole:
             return False
@@ -154,8 +158,11 @@ class Journal:
             if force:
                 return False
             raise FileError(
-                f"{self.path} has {len(records)} runs of another {self._kind}, {different}: type that one again to go "
-                "on with it, add --force to throw it away, or name another file with --out."
+                f"{self.path} has {len(records)} runs of another {self._kind}, {different}",
+                "type that one again to go on with it, add ",
+                Option("force", True),
+                " to throw it away, or name another file with ",
+                Option("out"),
             )
         self.records, self.history = records, history
         self._truncate(whole)

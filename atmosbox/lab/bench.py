@@ -15,7 +15,7 @@ from atmosbox.engine.exact.cells import ROW
 from atmosbox.engine.exact.rows import FEWEST, MOST, row_stride
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-from atmosbox.errors import SettingError
+from atmosbox.errors import Command, SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
 from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.laying_out import Column, Layout
@@ -129,7 +129,12 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = f"has an instrument that is not compiled for the page, {unknown[0]}"
     if why is not None:
         raise SettingError(
-            "scene", prepared.scene, why, f"let it run with atmosbox live {prepared.scene}, or show a run with view"
+            "scene",
+            prepared.scene,
+            why,
+            "let it run with ",
+            Command("live", (prepared.scene,)),
+            ", or show a run with view",
         )
 
 

@@ -16,7 +16,7 @@ from atmosbox.errors import AtmosboxError
 from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.lab.wasm_module import module_bytes
 from atmosbox.live.lesson import lesson_of
-from atmosbox.scene.parameter import Parameter
+from atmosbox.scene.settings import Parameter
 from atmosbox.simulation.preparation import Prepared, prepare
 
 __all__ = ["AS_WRITTEN", "Start", "lab_starts"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import Command, Setting, SettingError
 from atmosbox.lab.moist_plan import moist_tables
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.trace import plain
@@ -51,8 +51,10 @@ def short_run(prepared: Prepared) -> xr.Dataset:
             "scene",
             prepared.scene,
             "crowds so many molecules together that the page runs out of room for them",
-            f"let it run with atmosbox live {prepared.scene}, give it fewer molecules, or begin it where it comes to "
-            "rest, as atmosphere with --set start=equilibrium",
+            "let it run with ",
+            Command("live", (prepared.scene,)),
+            ", give it fewer molecules, or begin it where it comes to rest, as atmosphere with ",
+            Setting("start", "equilibrium"),
         )
     found, _ = gauge.dataset("lab", settle=0, judged=False)
     return found

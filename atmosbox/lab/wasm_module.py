@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.engine.core.kernel_cache import code_of
-from atmosbox.errors import EngineError
+from atmosbox.errors import Command, EngineError
 
 __all__ = ["BESIDE", "FOLDER", "SCENES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
 
@@ -90,11 +90,10 @@ def module_bytes(name: str, scene: str) -> bytes:
     path = FOLDER / f"{name}.wasm.gz"
     if not path.is_file():
         if not any(FOLDER.glob("*.wasm.gz")):
-            problem = "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
-        else:
-            problem = (
-                f"The settings of {scene} need kernels that no WebAssembly module of this version has "
-                f"({name}): leave them as they are, or let the scene run with atmosbox live {scene}."
+            raise EngineError(
+                "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
             )
-        raise EngineError(problem)
+        problem = f"The settings of {scene} need kernels that no WebAssembly module of this version has ({name})"
+        fix = "leave them as they are, or let the scene run with "
+        raise EngineError(problem, fix, Command("live", (scene,)))
     return path.read_bytes()

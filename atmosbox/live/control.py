@@ -10,7 +10,7 @@ from typing import Any
 
 from atmosbox.errors import SettingError
 from atmosbox.scene.knob import Knob
-from atmosbox.scene.parameter import Parameter, Value
+from atmosbox.scene.settings import Parameter, Value
 
 __all__ = ["COLLISIONS", "Control", "controls", "in_words", "number_between"]
 

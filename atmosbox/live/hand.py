@@ -13,7 +13,7 @@ from atmosbox.live.control import COLLISIONS, Control, controls
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change
 from atmosbox.scene.engines import EngineChoice, choose
-from atmosbox.scene.parameter import Value
+from atmosbox.scene.settings import Value
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared, usual_engine
 

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from atmosbox.live.outlook import outlook, planned
 from atmosbox.page import NEIGHBOURS, Box, Stage, round_up, stage
-from atmosbox.scene.conversion import to_si
+from atmosbox.scene.conversion import phrase, to_si
 from atmosbox.scene.instruments import wall_laws
-from atmosbox.scene.quantity import phrase
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared
 from atmosbox.theory.constants import DRY_AIR, WATER

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.errors import AtmosboxError, SettingError, on_command_line
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change, Tape, file_for
 from atmosbox.scene.panels import to_json
@@ -113,7 +113,7 @@ class Recorder:
         try:
             self._tape = Tape(path, prepared, box.setup, recording, changes, panels=box.panels, force=self._force)
         except AtmosboxError as error:
-            self._note("error", str(error))
+            self._note("error", error.said(on_command_line))
 
     def closed(self, box: Experiment, changes: Sequence[Change]) -> None:
         """Handle the completion of a frame: begin, save or stop the recording."""
@@ -123,7 +123,7 @@ class Recorder:
             try:
                 self._tape.save()
             except AtmosboxError as error:
-                self._note("error", f"The recording stops: {error}")
+                self._note("error", f"The recording stops: {error.said(on_command_line)}")
                 self._tape = None
             else:
                 if self._tape.frames >= longest(box):
@@ -146,7 +146,7 @@ class Recorder:
         try:
             path = None if tape is None else tape.finish()
         except AtmosboxError as error:
-            self._note("error", str(error))
+            self._note("error", error.said(on_command_line))
             return None
         if tape is None or path is None:
             self._note("warning", "Nothing was recorded: no frame was complete.")

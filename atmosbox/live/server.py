@@ -20,7 +20,7 @@ from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from atmosbox.errors import AtmosboxError, EngineError, SettingError
+from atmosbox.errors import AtmosboxError, EngineError, Option, SettingError
 from atmosbox.live.audience import Audience, Mailbox
 from atmosbox.live.session import Session
 from atmosbox.live.worker import GREET, JOIN, LEAVE, Worker
@@ -204,8 +204,12 @@ async def _listen(service: _Service, host: str, port: int | None) -> SocketServe
                 raise
     if port is None:
         said = f"{PORT} to {ports[-1]}"
-        raise SettingError("port", said, "are all in use", "end another program, or give --port with a free one")
-    raise SettingError("port", port, "is in use or not allowed", "give another, or leave --port out for a free one")
+        raise SettingError(
+            "port", said, "are all in use", "end another program, or give ", Option("port"), " with a free one"
+        )
+    raise SettingError(
+        "port", port, "is in use or not allowed", "give another, or leave ", Option("port"), " out for a free one"
+    )
 
 
 async def _signal() -> int:

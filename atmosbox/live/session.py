@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.engine import StalledError
-from atmosbox.errors import SettingError
+from atmosbox.errors import AtmosboxError, Given, Setting, SettingError, on_command_line
 from atmosbox.live import hand
 from atmosbox.live.control import COLLISIONS, Control, in_words, number_between
 from atmosbox.live.experiment import Experiment
@@ -21,7 +21,7 @@ from atmosbox.live.picture import Picture
 from atmosbox.live.recorder import Recorder, longest
 from atmosbox.live.summary import Report, while_it_runs
 from atmosbox.live.tape import Change
-from atmosbox.scene.parameter import Value
+from atmosbox.scene.settings import Value
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared
 
@@ -202,13 +202,7 @@ class Session:
         AtmosboxError
             If the request is not possible; nothing has changed then.
         """
-        try:
-            self._obey(message.get("type"), message)
-        except SettingError as error:  # worded for the command line
-            error.fix = error.fix.replace("--set ", "").replace("--engine ", "the engine ")
-            raise
-
-    def _obey(self, kind: object, message: Mapping[str, Any]) -> None:
+        kind = message.get("type")
         if kind == "play":
             self.playing, self.finished = True, False
         elif kind == "pause":
@@ -235,6 +229,19 @@ class Session:
         else:
             known = "play, pause, step, reset, pace, set, preset, pump, undo, record or stop_record"
             raise SettingError("type", in_words(kind), "cannot be asked for by this page", f"give {known}")
+
+    def said(self, error: AtmosboxError) -> str:
+        """Return the sentence of an error in the words of the page: a setting has the name that stands beside it."""
+        names = {control.name: control.parameter.help for control in self.controls()}
+
+        def words(given: Given) -> str:
+            if isinstance(given, Setting):
+                return f"{names.get(given.name, given.name)} = {given.value}"
+            return on_command_line(given)
+
+        if isinstance(error, SettingError):
+            error.name = names.get(error.name, error.name)
+        return error.said(words)
 
     def _reset(self, seed: object) -> None:
         values: dict[str, Any] = self._hand.settings(self.prepared)

@@ -9,15 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from atmosbox.errors import FileError, shown
+from atmosbox.errors import Command, FileError, Option, shown
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.output_path import check_writable, unused
 from atmosbox.file.provenance import history_line
 from atmosbox.live.summary import without_headlines
-from atmosbox.scene.conversion import to_si
+from atmosbox.scene.conversion import phrase, to_si
 from atmosbox.scene.panels import Panel, to_json
-from atmosbox.scene.parameter import Value
-from atmosbox.scene.quantity import phrase
+from atmosbox.scene.settings import Value
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared
 from atmosbox.simulation.recording import Recording
@@ -103,7 +102,8 @@ def file_for(name: str | None, scene: str, folder: Path, *, force: bool) -> Path
         raise FileError(f"{what} is not the name of a file: give one without a folder, such as {like}.")
     path = folder / (plain if plain.endswith(".nc") else f"{plain}.nc")
     if os.path.exists(path) and not force:
-        raise FileError(f"{path.name} exists already: give another name, or start atmosbox live with --force.")
+        again = Command("live", (scene, Option("force", True)))
+        raise FileError(f"{path.name} exists already", "give another name, or start with ", again)
     return check_writable(path, force)
 
 

@@ -170,7 +170,7 @@ class Worker:
             with told(session.prepared, self._say_compiling):
                 session.obey(message)
         except AtmosboxError as error:
-            self._tell(page, {"type": "note", "level": "error", "text": str(error)})
+            self._tell(page, {"type": "note", "level": "error", "text": session.said(error)})
 
     def _say_busy(self, words: str) -> None:
         """Tell all pages why they wait; the next state message removes this."""

@@ -54,7 +54,7 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     >>> import xarray as xr
     >>> figure_with_box(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "lifting-dry"}'}))
     Traceback (most recent call last):
-    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run lifting-dry --save-molecules.
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("lifting-dry", save_molecules=True).
     """
     look, held = find(theme), molecules(dataset)
     panels = tuple(panel for panel in panels_of(dataset) if panel.kind != "discs")

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
-from atmosbox.errors import FileError
+from atmosbox.errors import Command, FileError, Option
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve
 from atmosbox.plot.draw import Entry, draw
@@ -151,7 +151,7 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     ['A box']
     """
     if "atmosbox_panels" not in dataset.attrs:
-        raise FileError("The file does not say what its figure shows: it was not written by atmosbox run.")
+        raise FileError("The file does not say what its figure shows: atmosbox did not write it.")
     try:
         panels = from_json(dataset.attrs["atmosbox_panels"])
     except ValueError as error:
@@ -161,7 +161,8 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     if dataset.attrs.get("atmosbox_status", "complete") != "complete":
         panels = tuple(begun for panel in panels if (begun := _begun(dataset, panel)) is not None)
         if not panels:
-            raise FileError("The run was stopped too early for a figure: let it go on with atmosbox run --resume.")
+            again = Command("run", (Option("resume"),))
+            raise FileError("The run was stopped too early for a figure", "let it go on with ", again)
     return tuple(replace(panel, lines=_found(dataset, panel)) for panel in panels)
 
 

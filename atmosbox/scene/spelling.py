@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from atmosbox.errors import SettingError, shown
+from atmosbox.errors import Setting, SettingError, shown
 
 __all__ = ["assignments", "field_name", "nearest", "plain"]
 
@@ -94,8 +94,8 @@ def assignments(items: Iterable[str]) -> dict[str, str]:
         if not (name and equals and value):
             lacks = "name" if equals and not name else "value" if equals else '"=" between name and value'
             known = name if name.isascii() and name.isidentifier() else "name"
-            raise SettingError(f"--set {item}", None, f"has no {lacks}", f"give --set {known}=value")
+            raise SettingError(item, None, f"has no {lacks}", Setting(known, "value"))
         if name in values:
-            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
+            raise SettingError(name, value, "is given twice", Setting(shown(name)), " once")
         values[name] = value
     return values

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from atmosbox.errors import FileError, SettingError, shown
+from atmosbox.errors import FileError, Option, SettingError, shown
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.file.output_path import part_path, write_failure, write_whole
@@ -124,9 +124,9 @@ def sweep(
     ({'molecules': 2, 'member': 1}, (), True)
     """
     if jobs is not None and jobs < 1:
-        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {workers.cores()}")
+        raise SettingError("jobs", jobs, "is no number of processes", Option("jobs", workers.cores()))
     if jobs is not None and scheduler is not None:
-        raise SettingError("jobs", jobs, "is for this machine, and --scheduler for another", "leave one of them out")
+        raise SettingError("jobs", jobs, "is for this machine, and a scheduler for another", "leave one of them out")
     tell, say = progress or (lambda share, word: None), note or (lambda text: None)
     with _folder(plan, out, force) as (folder, checkpoint):
         tasks = plan.tasks(folder)
@@ -233,11 +233,17 @@ def _take(folder: Path, request: Mapping[str, Any], force: bool) -> None:
     if known == wanted:
         return
     if known is None and (os.path.lexists(folder) and not (folder.is_dir() and not any(folder.iterdir()))):
-        raise FileError(f"{folder} holds other things than a sweep: move it, or name another file with --out.")
+        raise FileError(
+            f"{folder} holds other things than a sweep", "move it, or name another file with ", Option("out")
+        )
     if known is not None and not force:
         raise FileError(
-            f"{folder} has the runs of another sweep, {_difference(known, wanted)}: name another file with --out, "
-            "or add --force to replace them."
+            f"{folder} has the runs of another sweep, {_difference(known, wanted)}",
+            "name another file with ",
+            Option("out"),
+            ", or add ",
+            Option("force", True),
+            " to replace them",
         )
     try:
         folder.mkdir(exist_ok=True)

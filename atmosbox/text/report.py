@@ -8,14 +8,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.scene.conversion import from_si, slashed
+from atmosbox.scene.conversion import from_si, phrase, slashed
 from atmosbox.scene.headline import CHANCE
-from atmosbox.scene.quantity import phrase
 from atmosbox.text.table import digits, measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline
-    from atmosbox.scene.parameter import Parameter
+    from atmosbox.scene.settings import Parameter
     from atmosbox.simulation.runner import Card, Outcome
 
 

@@ -226,7 +226,7 @@ def test_vapour_may_be_nearly_all_of_the_gas_but_not_more_than_it():
     is_sound(outcome)
     assert all(each.agrees for each in outcome.headlines)
     assert found(outcome)["mean_relative_humidity"].theory == pytest.approx(0.59, abs=0.01)
-    with pytest.raises(SettingError, match=r"more vapour than there is gas.*humidity=60percent"):
+    with pytest.raises(SettingError, match=r"more vapour than there is gas.*humidity=.60percent"):
         runner.prepare("condensation", {"temperature": 95.0, "pressure": 500.0, "humidity": 70.0})
 
 

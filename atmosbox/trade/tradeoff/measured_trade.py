@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from atmosbox import scenarios
-from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.errors import AtmosboxError, Option, SettingError
 from atmosbox.file.provenance import global_attributes
 from atmosbox.scene import engines
 from atmosbox.trade.tradeoff import timed_run
@@ -93,7 +93,7 @@ def measure(
     if ladder is None and not row:
         raise SettingError("scene", scene, "declares nothing to compare", "give its module a ladder of Series")
     if not (math.isfinite(budget) and 1.0 <= budget <= 1e6):
-        raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", "give --budget 60s")
+        raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", Option("budget", "60s"))
     module.Settings.from_user(settings or {})
     ways = tuple(ladder) if ladder is not None else rungs(row, settings or {})
     tell = progress or (lambda share, word: None)
@@ -140,7 +140,9 @@ def measure(
         if out is not None:
             KeptRuns.remove(out)  # otherwise a longer budget would be refused as another tradeoff
         why = next((reason for reason in refused if reason), "no run fits into it")
-        raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")
+        raise SettingError(
+            "budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer ", Option("budget")
+        )
     tell(1.0, "done")
     title = f"Speed against accuracy: {getattr(module, 'title', scene)}"
     found = _dataset(scene, ways, trials, refused, budget, title, words, row, status)
@@ -151,8 +153,8 @@ def measure(
 
 def _request(scene: str, settings: Mapping[str, Any], budget: float, seed: int, ways: Sequence[Rung]) -> dict[str, Any]:
     """Return all that determines the measurement, by names for messages."""
-    words: dict[str, Any] = {"version of atmosbox": __version__, "scene": scene, "--budget": budget, "--seed": seed}
-    words |= {f"--set {name}": str(value) for name, value in settings.items()}
+    words: dict[str, Any] = {"version of atmosbox": __version__, "scene": scene, "budget": budget, "seed": seed}
+    words |= {f"setting {name}": str(value) for name, value in settings.items()}
     return words | {"the ways of running it": [way.label for way in ways]}
 
 
