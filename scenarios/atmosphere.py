@@ -42,7 +42,7 @@ from atmosbox.engine import (
     maxwell_velocities,
     rotational_energies,
 )
-from atmosbox.errors import Setting, SettingError
+from atmosbox.errors import Setting
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -187,34 +187,20 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a column that cannot be stirred, and discs that rotate."""
         if self.stirring and self.plane:
-            raise SettingError(
-                "stirring", self.stirring, "is for air in space, not in a plane", Setting("plane", False)
-            )
+            raise self.refusal("stirring", "is for air in space, not in a plane", Setting("plane", False))
         if self.plane and self.rotation:
-            raise SettingError("rotation", True, "is not for the discs of a plane", Setting("rotation", False))
+            raise self.refusal("rotation", "is not for the discs of a plane", Setting("rotation", False))
         if not self.stirring:
             return
         if self.floor == "isolated":
-            raise SettingError(
-                "stirring",
-                self.stirring,
-                "heats the air, and an isolated floor keeps it in",
-                Setting("floor", "heat-bath"),
-            )
+            problem = "heats the air, and an isolated floor keeps it in"
+            raise self.refusal("stirring", problem, Setting("floor", "heat-bath"))
         least = math.ceil(10.0 / PARCEL)
         if self.molecules < least:
-            raise SettingError(
-                "molecules", self.molecules, "are too few to stir in parcels", Setting("molecules", least), " or more"
-            )
+            raise self.refusal("molecules", "are too few to stir in parcels", at_least=least)
         most = math.floor((1.0 - COLDEST) * self.si.temperature / self.lapse / 100.0) / 10.0
         if self.height > most:
-            raise SettingError(
-                "height",
-                f"{self.height:g} km",
-                "is higher than stirred air reaches",
-                Setting("height", f"{most:g}"),
-                " or less",
-            )
+            raise self.refusal("height", "is higher than stirred air reaches", at_most=most)
 
 
 class Column:

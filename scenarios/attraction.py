@@ -103,23 +103,12 @@ class Settings(SceneSettings):
         warmth = _warmth(self)
         if self.start != "vapour" and not warmth < 0.97 * law.WELL_CRITICAL_TEMPERATURE:
             most = 0.97 * law.SIMPLE_FLUIDS[self.substance].critical_temperature * self.attraction
-            raise SettingError(
-                "temperature",
-                f"{self.temperature:g} K",
-                f"is too warm for a {self.start} of this {self.substance}",
-                Setting("temperature", math.floor(most)),
-                " or less, or ",
-                Setting("start", "vapour"),
-            )
+            problem = f"is too warm for a {self.start} of this {self.substance}"
+            raise self.refusal("temperature", problem, ", or ", Setting("start", "vapour"), at_most=math.floor(most))
         sides, _ = _sides(self)
         if min(sides) < 2.2 * RANGE:
-            raise SettingError(
-                "molecules",
-                self.molecules,
-                "are too few for a box in which none attracts its own image",
-                "give more of them, or ",
-                Setting("start", "vapour"),
-            )
+            problem = "are too few for a box in which none attracts its own image"
+            raise self.refusal("molecules", problem, "give more of them, or ", Setting("start", "vapour"))
         held = math.prod(sides) * math.pi / 6.0 * law.WELL_CRITICAL_DENSITY * (self.density + self.air)
         if self.start == "vapour" and held > 0.45 * math.prod(sides):
             raise SettingError(
@@ -175,9 +164,7 @@ def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.
     inner, outer = order[: int(liquid)], order[int(1.1 * liquid) :]
     others = n - len(inner) + air
     if others > len(outer):
-        raise SettingError(
-            "density", settings.density, f"leaves no vapour beside a {settings.start}", "give less, or less air"
-        )
+        raise settings.refusal("density", f"leaves no vapour beside a {settings.start}", "give less, or less air")
     return np.asarray(sites[np.concatenate([inner, outer[_shuffled(len(outer), rng)[:others]]])])
 
 

@@ -448,7 +448,7 @@ def test_what_the_command_cannot_do_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for words, sentence in [
         (["--jobs", "0"], "give --jobs 1"),
-        (["--members", "many"], "give members=8"),
+        (["--members", "many"], "give --members 8"),
         (["--seed", "-1"], "give --seed 0"),
         (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "leave one of them out"),
         (["--out", "figure.png"], "name of a figure"),

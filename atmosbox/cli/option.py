@@ -1,15 +1,8 @@
 """The options and arguments that several commands share."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import typer
-
-from atmosbox.errors import Option, SettingError
-
-if TYPE_CHECKING:
-    from atmosbox.scene.settings import Parameter, Value
 
 __all__ = [
     "Accuracy",
@@ -30,7 +23,6 @@ __all__ = [
     "Verbose",
     "out_option",
     "quiet_option",
-    "value_of",
 ]
 
 
@@ -55,15 +47,6 @@ def out_option(help: str) -> Any:
 def quiet_option(help: str) -> Any:
     """Return the option ``--quiet``."""
     return typer.Option("--quiet", help=help)
-
-
-def value_of(parameter: Parameter, text: str) -> Value:
-    """Return the value that was typed for an option, read as one of a setting."""
-    try:
-        return parameter.parse(text)
-    except SettingError as error:
-        error.instead_of_settings(lambda setting: Option(*setting))
-        raise
 
 
 SceneName = typer.Argument(

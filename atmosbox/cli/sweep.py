@@ -19,11 +19,10 @@ from atmosbox.cli.option import (
     Verbose,
     out_option,
     quiet_option,
-    value_of,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, on_command_line
+from atmosbox.errors import AtmosboxError, EngineError, Option, PhysicsError, on_command_line
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -128,7 +127,7 @@ def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
     """Return the whole number that was given for an option."""
     from atmosbox.scene.settings import Parameter
 
-    return int(value_of(Parameter(option, "1", 8, low, high, kind="int"), text))
+    return int(Parameter(option, "1", 8, low, high, kind="int", given_as=Option).parse(text))
 
 
 def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:

@@ -11,19 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import (
-    AllPanels,
-    Force,
-    Json,
-    SceneName,
-    ValuesOfAll,
-    Verbose,
-    out_option,
-    quiet_option,
-    value_of,
-)
+from atmosbox.cli.option import AllPanels, Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
 from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
+from atmosbox.errors import Option
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -65,8 +56,8 @@ def tradeoff(
     from atmosbox.scene.spelling import assignments
     from atmosbox.trade.tradeoff import KeptRuns, measure
 
-    seconds = float(value_of(Parameter("budget", "s", 60.0, 1.0, 1e6), budget))
-    first = int(value_of(Parameter("seed", "1", 1, 0, 2**62, kind="int"), seed or "1"))
+    seconds = float(Parameter("budget", "s", 60.0, 1.0, 1e6, given_as=Option).parse(budget))
+    first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int", given_as=Option).parse(seed or "1"))
 
     def written(path: Path) -> list[Path]:
         return [path, path.with_suffix(".csv"), path.with_suffix(".png")]

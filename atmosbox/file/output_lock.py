@@ -13,8 +13,10 @@ from typing import Any
 from atmosbox.errors import FileError, Option
 from atmosbox.file.provenance import moment
 
-__all__ = ["BusyError", "OutputLock", "alive", "hold", "host"]
+__all__ = ["ELSEWHERE", "BusyError", "OutputLock", "alive", "hold", "host"]
 
+ELSEWHERE = ("give another place with ", Option("out"))
+"""The remedy where a file cannot be written."""
 ABANDONED = 3600.0
 """Seconds after which the lock of a process on another computer, which cannot be checked, counts as abandoned."""
 
@@ -95,8 +97,7 @@ class OutputLock:
         try:
             opened = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
-            problem = f"{self.path} cannot be made ({error.strerror})"
-            raise FileError(problem, "give another place with ", Option("out")) from error
+            raise FileError(f"{self.path} cannot be made ({error.strerror})", *ELSEWHERE) from error
         try:
             held = hold(opened)
             owner = _owner(os.read(opened, 1000))

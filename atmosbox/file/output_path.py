@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from atmosbox.errors import DiskFullError, FileError, Option, SettingError, shown
-from atmosbox.file.output_lock import alive, host
+from atmosbox.file.output_lock import ELSEWHERE, alive, host
 from atmosbox.file.provenance import moment
 
 __all__ = [
@@ -140,14 +140,14 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
         words = shlex.quote(str(folder))
         raise FileError(f"The folder {words} does not exist: type mkdir -p {words} first.")
     if not os.path.isdir(folder):
-        raise FileError(f"{folder} is a file, not a folder", "give another place with ", Option("out"))
+        raise FileError(f"{folder} is a file, not a folder", *ELSEWHERE)
     if os.path.exists(found) and not os.path.isfile(found):
         raise FileError(f"{found} is a device, not a file", "give another name with ", Option("out"))
     if os.path.exists(found) and not force:
         fix = ("add ", Option("force", True), " to replace it, or name another file with ", Option("out"))
         raise FileError(f"{found} exists already", *fix)
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise FileError(f"Nothing may be written to the folder {folder}", "give another place with ", Option("out"))
+        raise FileError(f"Nothing may be written to the folder {folder}", *ELSEWHERE)
     if shutil.disk_usage(folder).free < SMALLEST_FILE:
         raise write_failure(OSError(errno.ENOSPC, ""), found)
     moment()
@@ -335,12 +335,9 @@ def write_failure(error: OSError, path: Path) -> FileError:
     Examples
     --------
     >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
-    'The disk has no room for no/run.nc: delete something, or give another out.'
+    'The disk has no room for no/run.nc: delete something, or give another place with out.'
     """
     if error.errno in FULL:
         kept = ", which stays as it was" if path.exists() else ""
-        return DiskFullError(
-            f"The disk has no room for {path}{kept}", "delete something, or give another ", Option("out")
-        )
-    problem = f"{path} could not be written ({error.strerror or error})"
-    return FileError(problem, "give another place with ", Option("out"))
+        return DiskFullError(f"The disk has no room for {path}{kept}", "delete something, or ", *ELSEWHERE)
+    return FileError(f"{path} could not be written ({error.strerror or error})", *ELSEWHERE)

@@ -24,7 +24,7 @@ from decimal import Decimal
 from types import SimpleNamespace
 from typing import Any, ClassVar, Never, Self, TypeVar
 
-from atmosbox.errors import Given, Setting, SettingError, UnitError, UnknownSettingError, shown
+from atmosbox.errors import Given, Option, Setting, SettingError, UnitError, UnknownSettingError, shown
 from atmosbox.scene.conversion import (
     MEASURES,
     converted,
@@ -65,6 +65,8 @@ class Parameter:
         What the setting is, in one line.
     kind
         The type of its value: "int", "float", "bool" or "str".
+    given_as
+        `Option` if it is not a setting of a scene but an option of a command that is read like one.
     """
 
     name: str
@@ -75,6 +77,7 @@ class Parameter:
     choices: tuple[str, ...] | None = None
     help: str = ""
     kind: str = "float"
+    given_as: type[Setting] | type[Option] = Setting
 
     @property
     def allowed(self) -> str:
@@ -97,6 +100,10 @@ class Parameter:
         if isinstance(value, bool):
             return "on" if value else "off"
         return shlex.quote(value) if isinstance(value, str) else typed(value, self.unit)
+
+    def said(self, value: Value) -> str:
+        """Return a value with its unit for a sentence or a table."""
+        return self.typed(value) if isinstance(value, bool | str) else phrase(value, self.unit)
 
     def parse(self, value: object) -> Value:
         """Return what a user gave for this setting, in its documented unit.
@@ -216,11 +223,11 @@ class Parameter:
         limits = (self.low is not None) + (self.high is not None)
         return f"{kind} {('in', 'of', 'from')[limits]} {self.allowed if limits else self.unit}".removesuffix(" in 1")
 
-    def instead(self, value: Value | None = None) -> Setting:
+    def instead(self, value: Value | None = None) -> Given:
         """Return a value, or else the default, for the remedy of an error."""
         value = self.default if value is None else value
         bare = isinstance(value, bool | str) or self.unit == "1"
-        return Setting(self.name, value if bare else typed(float(value), self.unit))
+        return self.given_as(self.name, value if bare else typed(float(value), self.unit))
 
     def _refusal(self, value: object, problem: str, instead: Value | None = None) -> SettingError:
         return SettingError(self.name, value, problem, self.instead(instead))
@@ -406,7 +413,39 @@ class SceneSettings:
         return variant
 
     def check(self) -> None:
-        """Raise SettingError where the settings do not fit together; a scene may override this."""
+        """Raise the error of :meth:`refusal` where the settings do not fit together; a scene may override this."""
+
+    def refusal(
+        self,
+        name: str,
+        problem: str,
+        *remedy: Given | str,
+        at_most: float | None = None,
+        at_least: float | None = None,
+    ) -> SettingError:
+        """Return the error for a setting that does not go with the others.
+
+        Parameters
+        ----------
+        name
+            The name of the setting.
+        problem
+            What is wrong with it; the sentence puts it after the value.
+        *remedy
+            What else the user can do, as for :class:`~atmosbox.errors.SettingError`.
+        at_most, at_least
+            The highest or the lowest value that goes with the others, in the unit of the setting.
+
+        Examples
+        --------
+        >>> print(SceneSettings(seed=7).refusal("seed", "is too lucky", at_most=6))
+        seed = 7 is too lucky: give seed=6 or less.
+        """
+        if at_most is not None:
+            remedy = (self._declared[name].instead(at_most), " or less", *remedy)
+        if at_least is not None:
+            remedy = (self._declared[name].instead(at_least), " or more", *remedy)
+        return SettingError(name, self._declared[name].said(getattr(self, name)), problem, *remedy)
 
     @functools.cached_property
     def si(self) -> SimpleNamespace:

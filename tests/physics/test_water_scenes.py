@@ -233,7 +233,7 @@ def test_vapour_may_be_nearly_all_of_the_gas_but_not_more_than_it():
 @pytest.mark.parametrize(
     ("scene", "given", "words", "fix"),
     [
-        ("condensation", ["pressure=1hPa"], "humidity = 150 % is more vapour", "humidity=4percent"),
+        ("condensation", ["pressure=1hPa"], "humidity = 150 percent is more vapour", "humidity=4percent"),
         ("lifting-moist", ["top_pressure=990hPa"], "is not below the pressure", "top_pressure=300hPa"),
         ("lifting-moist", ["dewpoint=26degC"], "is above the temperature", "dewpoint=25degC"),
         ("mountains", ["valley=2.5km"], "is higher than the lower mountain", "valley=2km"),
