@@ -189,7 +189,7 @@ def _unknown(text: str) -> UnknownSceneError:
             problem, "to run the scene of a file again, type ", Command("run", (Option("from", text),))
         )
     meant = f"did you mean {' or '.join(near)}? " if near else ""
-    return UnknownSceneError(problem, meant, Command("list"), " shows all")
+    return UnknownSceneError(problem, f"{meant}`", Command("list"), "` shows all")
 
 
 def _load_file(path: Path) -> ModuleType:
@@ -197,7 +197,9 @@ def _load_file(path: Path) -> ModuleType:
     if os.path.isdir(path):
         raise FileError(f"{path} is a folder: give the path of the scene's .py file in it.")
     if not os.path.exists(path):
-        raise FileError(f"There is no file {path}", "check its path, or take a scene that ", Command("list"), " shows")
+        raise FileError(
+            f"There is no file {path}", "check its path, or take a scene that `", Command("list"), "` shows"
+        )
     try:
         source = path.read_bytes()
     except OSError as error:

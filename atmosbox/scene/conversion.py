@@ -90,11 +90,6 @@ SIGNS = str.maketrans({"−": "-", "º": "°", "˚": "°"})
 def slashed(unit: str) -> str:
     """Return a unit in the form in which it is typed, without a blank.
 
-    Parameters
-    ----------
-    unit
-        The unit as a scene declares it.
-
     Examples
     --------
     >>> slashed("m s-2"), slashed("K km-1"), slashed("degC")
@@ -137,11 +132,6 @@ def _looked_up(name: str) -> Unit | None:
 def known_unit(text: str) -> Unit | None:
     """Return the unit of any spelling, from the table or else from pint; None if there is none.
 
-    Parameters
-    ----------
-    text
-        The unit as a user types it.
-
     Examples
     --------
     >>> known_unit("m/s^2") == known_unit("m s-2"), known_unit("blorp")
@@ -155,17 +145,7 @@ def known_unit(text: str) -> Unit | None:
 
 
 def declared_unit(unit: str) -> Unit:
-    """Return the unit that a scene declares.
-
-    Parameters
-    ----------
-    unit
-        The unit, such as "hPa", "degC", "K/km", "%", or "1" for a pure number.
-
-    Raises
-    ------
-    UnitError
-        If there is no such unit.
+    """Return the unit that a scene declares; raise UnitError if there is no such unit.
 
     Examples
     --------
@@ -241,14 +221,7 @@ def from_si(value: float, unit: str, *, difference: bool = False) -> float:
 
 
 def phrase(value: float, unit: str) -> str:
-    """Return a number and its unit for a sentence.
-
-    Parameters
-    ----------
-    value
-        A number in `unit`.
-    unit
-        The unit; "1" and the empty unit are left out.
+    """Return a number and its unit for a sentence; the unit "1" is left out.
 
     Examples
     --------
@@ -262,13 +235,6 @@ def phrase(value: float, unit: str) -> str:
 def typed(value: float, unit: str) -> str:
     """Return a number and its unit in the form in which they are typed after ``--set``, without a blank.
 
-    Parameters
-    ----------
-    value
-        A number in `unit`.
-    unit
-        The unit; "1" and the empty unit are left out.
-
     Examples
     --------
     >>> typed(25.0, "degC"), typed(9.8, "m s-2"), typed(3.0, "m s-1")
@@ -280,15 +246,7 @@ def typed(value: float, unit: str) -> str:
 def number_and_unit(value: object) -> tuple[Decimal, str]:
     """Return a finite number with all the digits that were given, and its unit, empty for a bare number.
 
-    Parameters
-    ----------
-    value
-        A number, or a text such as "25 degC", "298.15K", "1_000 hPa" or "9.8 m/s^2".
-
-    Raises
-    ------
-    ValueError
-        If the value is not a number; the message says what is wrong, in words that follow the value.
+    A ValueError says what is wrong with the value, in words that follow it.
 
     Examples
     --------
@@ -318,23 +276,9 @@ def number_and_unit(value: object) -> tuple[Decimal, str]:
 
 
 def converted(number: float, unit: str, wanted: str) -> float:
-    """Return a number of one unit in another, rounded to 12 digits.
+    """Return a number of one unit in another, rounded to 12 digits; a ValueError says what is wrong with its unit.
 
     Temperatures are absolute; a degree in a product, as in "6.5 degC/km", is a difference of temperature.
-
-    Parameters
-    ----------
-    number
-        A number in `unit`.
-    unit
-        A unit as a user types it.
-    wanted
-        The unit wanted, as a scene declares it.
-
-    Raises
-    ------
-    ValueError
-        If there is no such unit, it has another dimension, or the result is too large; the message says which.
 
     Examples
     --------

@@ -236,23 +236,9 @@ class Parameter:
 def by_name(
     given: Mapping[str, T], parameters: Mapping[str, Parameter], whose: str = "a setting of this scene"
 ) -> dict[str, T]:
-    """Return values by the names of their settings, however a user spelled these names.
+    """Return values by the names of their settings, which a user may spell with "-" for "_".
 
-    Parameters
-    ----------
-    given
-        The values; a name may be spelled with "-" for "_".
-    parameters
-        The settings by name.
-    whose
-        What the settings belong to, for the sentence of a refusal.
-
-    Raises
-    ------
-    UnknownSettingError
-        If there is no setting of a name; the sentence suggests the nearest name.
-    SettingError
-        If a setting is given twice.
+    A name that is unknown, or given twice, is refused; `whose` says in that sentence what the settings belong to.
 
     Examples
     --------

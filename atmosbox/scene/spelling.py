@@ -13,11 +13,6 @@ __all__ = ["assignments", "field_name", "nearest", "plain"]
 def field_name(name: str) -> str:
     """Return the Python name of a setting, which a user may spell with "-" for "_".
 
-    Parameters
-    ----------
-    name
-        What was typed.
-
     Examples
     --------
     >>> field_name(" pressure-top")
@@ -29,11 +24,6 @@ def field_name(name: str) -> str:
 def plain(name: str) -> str:
     """Return a name in the form for comparison: without capitals, and with "_" for "-".
 
-    Parameters
-    ----------
-    name
-        What was typed, or what could have been.
-
     Examples
     --------
     >>> plain(" Pressure-Top")
@@ -44,13 +34,6 @@ def plain(name: str) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
     """Return the name that a user probably meant, or None.
-
-    Parameters
-    ----------
-    name
-        What was typed.
-    names
-        What could have been.
 
     Examples
     --------
@@ -68,17 +51,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 
 
 def assignments(items: Iterable[str]) -> dict[str, str]:
-    """Return the values of ``name=value``, as they are typed after each ``--set``, by name.
-
-    Parameters
-    ----------
-    items
-        The texts after each ``--set``; a value may stand in quotes.
-
-    Raises
-    ------
-    SettingError
-        If a text is not a name, "=" and a value, or names a setting again.
+    """Return the values of ``name=value``, as they are typed after each ``--set``, by name; refuse what is no such text.
 
     Examples
     --------
