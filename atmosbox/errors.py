@@ -23,7 +23,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 __all__ = [
     "AtmosboxError",
@@ -233,12 +233,9 @@ class AtmosboxError(Exception):
 
     def __init__(self, problem: str, *remedy: Given | str) -> None:
         super().__init__(problem)
+        self.args = (problem, *remedy)  # with which another process makes this error
         self.problem = problem
         self.remedy = remedy
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Return what another process needs to make this error."""
-        return type(self), (self.problem, *self.remedy)
 
     def instead_of_settings(self, given: Callable[[Setting], Given]) -> None:
         """Name something else in place of each setting in the remedy, such as the option for which a value was read."""
@@ -299,12 +296,9 @@ class SettingError(AtmosboxError, ValueError):
 
     def __init__(self, name: str, value: object, problem: str, *remedy: Given | str) -> None:
         super().__init__(problem, *remedy)
+        self.args = (name, value, problem, *remedy)
         self.name = name
         self.value = value
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Return what another process needs to make this error."""
-        return type(self), (self.name, self.value, self.problem, *self.remedy)
 
     def _wrong(self) -> str:
         return f"{shown(self.name)}{'' if self.value is None else f' = {shown(self.value)}'} {self.problem}"

@@ -47,7 +47,7 @@ def made(error):
             "is below the lowest allowed, 1 K to 2000 K",
             Setting("temperature", "25degC"),
         )
-    return error("The disk is full.")
+    return error("The disk is full", "delete something, or give another ", Option("out"))
 
 
 def test_every_error_is_an_atmosbox_error_and_a_builtin_with_a_status():
@@ -66,7 +66,7 @@ def test_the_tree_here_and_in_the_docstring_is_complete():
 
 def test_the_text_of_an_error_is_its_sentence():
     for error in [error for error, _, _ in TREE]:
-        expected = "The disk is full."
+        expected = "The disk is full: delete something, or give another out."
         if issubclass(error, SettingError):
             expected = 'temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give temperature="25degC".'
         assert str(made(error)) == expected

@@ -208,7 +208,7 @@ def test_a_sweep_is_refused_before_anything_runs():
         ({"settings": {"molecule": 3}}, UnknownSettingError, "give molecules="),
         ({"settings": {"molecules": 3}}, SettingError, "leave out molecules"),
         ({"vary": ["molecules=1,2", "molecules=3,4"]}, SettingError, "varied twice"),
-        ({"members": 0}, SettingError, "give members=8"),
+        ({"members": 0}, SettingError, "give members=1"),
         ({"members": 10**6}, SettingError, "vary fewer"),
         ({"engine": "magic"}, SettingError, "magic"),
         ({"accuracy": "perfect"}, SettingError, "perfect"),
@@ -449,7 +449,7 @@ def test_what_the_command_cannot_do_is_refused(tmp_path, monkeypatch):
     for words, sentence in [
         (["--jobs", "0"], "give --jobs 1"),
         (["--members", "many"], "give --members 8"),
-        (["--seed", "-1"], "give --seed 0"),
+        (["--seed", "-1"], "give --set seed=0"),
         (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "leave one of them out"),
         (["--out", "figure.png"], "name of a figure"),
     ]:

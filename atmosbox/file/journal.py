@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.errors import FileError, Option, shown
-from atmosbox.file.output_lock import hold
+from atmosbox.file.output_lock import ANOTHER_NAME, hold
 from atmosbox.file.output_path import check_writable, part_path, write_failure
 
 __all__ = ["Journal"]
@@ -83,11 +83,7 @@ class Journal:
             raise write_failure(error, self.path) from error
         try:
             if hold(self._file.fileno()) is False:
-                raise FileError(
-                    f"{self.path} is being written by another {kind}",
-                    "wait for it, or name another file with ",
-                    Option("out"),
-                )
+                raise FileError(f"{self.path} is being written by another {kind}", "wait for it, or ", *ANOTHER_NAME)
             if not self._recalled(request, force):
                 self._truncate(0)
                 self._write({self._head: FORMAT, "request": dict(request), "history": history})
@@ -161,8 +157,8 @@ class Journal:
                 f"{self.path} has {len(records)} runs of another {self._kind}, {different}",
                 "type that one again to go on with it, add ",
                 Option("force", True),
-                " to throw it away, or name another file with ",
-                Option("out"),
+                " to throw it away, or ",
+                *ANOTHER_NAME,
             )
         self.records, self.history = records, history
         self._truncate(whole)

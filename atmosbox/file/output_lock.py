@@ -13,10 +13,12 @@ from typing import Any
 from atmosbox.errors import FileError, Option
 from atmosbox.file.provenance import moment
 
-__all__ = ["ELSEWHERE", "BusyError", "OutputLock", "alive", "hold", "host"]
+__all__ = ["ANOTHER_NAME", "ELSEWHERE", "BusyError", "OutputLock", "alive", "hold", "host"]
 
 ELSEWHERE = ("give another place with ", Option("out"))
 """The remedy where a file cannot be written."""
+ANOTHER_NAME = ("name another file with ", Option("out"))
+"""The remedy where a file of this name is there, or is being written."""
 ABANDONED = 3600.0
 """Seconds after which the lock of a process on another computer, which cannot be checked, counts as abandoned."""
 
@@ -105,8 +107,8 @@ class OutputLock:
                 whose = f"process {owner['pid']} on {owner['host']} since {owner['since']}" if owner else "another run"
                 raise BusyError(
                     f"{path} is being written by {whose}",
-                    "wait for it, or name another file with ",
-                    Option("out"),
+                    "wait for it, or ",
+                    *ANOTHER_NAME,
                     f"; if it runs no more, remove {self.path}",
                 )
             with contextlib.suppress(OSError):

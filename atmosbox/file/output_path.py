@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from atmosbox.errors import DiskFullError, FileError, Option, SettingError, shown
-from atmosbox.file.output_lock import ELSEWHERE, alive, host
+from atmosbox.file.output_lock import ANOTHER_NAME, ELSEWHERE, alive, host
 from atmosbox.file.provenance import moment
 
 __all__ = [
@@ -144,8 +144,7 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
     if os.path.exists(found) and not os.path.isfile(found):
         raise FileError(f"{found} is a device, not a file", "give another name with ", Option("out"))
     if os.path.exists(found) and not force:
-        fix = ("add ", Option("force", True), " to replace it, or name another file with ", Option("out"))
-        raise FileError(f"{found} exists already", *fix)
+        raise FileError(f"{found} exists already", "add ", Option("force", True), " to replace it, or ", *ANOTHER_NAME)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise FileError(f"Nothing may be written to the folder {folder}", *ELSEWHERE)
     if shutil.disk_usage(folder).free < SMALLEST_FILE:

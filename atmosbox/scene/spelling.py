@@ -51,7 +51,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 
 
 def assignments(items: Iterable[str]) -> dict[str, str]:
-    """Return the values of ``name=value``, as they are typed after each ``--set``, by name; refuse what is no such text.
+    """Return the values of ``name=value``, as they are typed after each ``--set``, by name; refuse other texts.
 
     Examples
     --------

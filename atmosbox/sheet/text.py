@@ -93,7 +93,7 @@ def _table(**entries: tuple[Reader, Any]) -> Reader:
         if not isinstance(found, dict):
             raise ConfigError(f"{place} is no table: write [{place}] above its entries")
         within = f"{place}, " if place else ""
-        for name in found.keys() - entries.keys():
+        for name in sorted(found.keys() - entries.keys()):
             raise ConfigError(f"{within}{shown(name)} is unknown: correct the name, or remove it")
         for name, (_, default) in entries.items():
             if default is ... and name not in found:
@@ -112,17 +112,17 @@ _QUESTION: dict[str, tuple[Reader, Any]] = {
     "lines": (_NUMBER, None),  # empty ones, below the question
     "lab": (_SWITCH, True),  # whether running pages can answer it
 }
-_SKETCH = _table(x=(_needed, ...), y=(_needed, ...))  # empty axes for a guess: their labels, with units
-_ANSWERS: dict[str, tuple[Reader, Any]] = {
-    "choices": (_list(_needed), ()),  # to tick; the one with the number `right` is right
-    "right": (_NUMBER, None),
-    "sketch": (_SKETCH, None),
-}
+_PREDICTION = _table(
+    **_QUESTION,
+    choices=(_list(_needed), ()),  # to tick; the one with the number `right` is right
+    right=(_NUMBER, None),
+    sketch=(_table(x=(_needed, ...), y=(_needed, ...)), None),  # empty axes for a guess: their labels, with units
+)
 
 
 def _prediction(found: Any, place: str) -> dict[str, Any]:
     """Return a prediction that is written down before the run: answers to tick, a sketch, or free lines."""
-    read: dict[str, Any] = _table(**_QUESTION, **_ANSWERS)(found, place)
+    read: dict[str, Any] = _PREDICTION(found, place)
     right, choices = read["right"], read["choices"]
     if right is not None and not 1 <= right <= len(choices):
         raise ConfigError(f"{place}: right = {right} is the number of none of its {len(choices)} choices: count from 1")

@@ -10,7 +10,7 @@ import numpy as np
 
 from atmosbox.errors import Option, SettingError, UnitError, UnknownSettingError
 from atmosbox.scene.conversion import from_si, to_si
-from atmosbox.scene.settings import Parameter, SceneSettings, Value
+from atmosbox.scene.settings import Parameter, SceneSettings, Value, by_name
 from atmosbox.scene.spelling import field_name
 
 __all__ = ["LONGEST", "Axis", "parse_vary"]
@@ -101,8 +101,7 @@ def parse_vary(items: Iterable[str], settings: type[SceneSettings]) -> tuple[Axi
         if name in (axis.name for axis in axes):
             raise SettingError(name, text, "is varied twice", Option("vary", {name: None}), " once")
         try:
-            if name not in parameters:
-                settings.from_user({name: text})  # raises the error that names the most similar setting
+            by_name({name: text}, parameters)  # raises the error that names the most similar setting
             axes.append(Axis(parameters[name], _values(text, parameters[name])))
         except UnknownSettingError as error:
             error.instead_of_settings(lambda part: Option("vary", {part.name: str(part.value)}))

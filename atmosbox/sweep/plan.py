@@ -14,8 +14,7 @@ import numpy as np
 
 from atmosbox import scenarios
 from atmosbox.errors import Option, Setting, SettingError
-from atmosbox.scene.settings import Value
-from atmosbox.scene.spelling import field_name
+from atmosbox.scene.settings import Parameter, Value, by_name
 from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.simulation.restart import described
 from atmosbox.sweep.axis import Axis, parse_vary
@@ -25,6 +24,7 @@ __all__ = ["MOST_RUNS", "Plan", "member_seed", "plan"]
 
 MOST_RUNS = 100_000
 """Greatest number of runs of one sweep."""
+_MEMBERS = Parameter("members", "1", 8, 1, MOST_RUNS, kind="int", given_as=Option)
 
 
 def member_seed(seed: int, point: int, member: int) -> int:
@@ -174,8 +174,8 @@ def plan(
     vary: Iterable[str],
     *,
     settings: Mapping[str, Any] | None = None,
-    members: int = 1,
-    seed: int | None = None,
+    members: int | str = 1,
+    seed: int | str | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
 ) -> Plan:
@@ -216,10 +216,7 @@ def plan(
     text = text.replace("_", "-") if text.replace("_", "-") in scenarios.names() else text
     declared = scenarios.load(text).Settings
     types = {p.name: p for p in declared.describe()}
-    given = {field_name(name): value for name, value in (settings or {}).items()}
-    for name, value in given.items():
-        if name not in types:
-            declared.from_user({name: value})  # raises the error that names the most similar setting
+    given = by_name(settings or {}, types)
     axes = parse_vary(vary, declared)
     if not axes:
         example = Option("vary", {"molecules": "100,200"})
@@ -227,12 +224,11 @@ def plan(
     fixed = {name: types[name].parse(value) for name, value in given.items()}
     own = fixed.pop("seed", types["seed"].default)
     chosen = int(types["seed"].parse(own if seed is None else seed))
-    if members < 1:
-        raise SettingError("members", members, "is fewer than one run at each point", Option("members", 8))
+    several = int(_MEMBERS.parse(members))
     for name in fixed.keys() & {axis.name for axis in axes}:
         fix = ("leave out ", Setting(name), " or ", Option("vary", {name: None}))
         raise SettingError(name, fixed[name], "is varied, too", *fix)
-    made = Plan(text, axes, fixed, members, chosen, engine, accuracy)
+    made = Plan(text, axes, fixed, several, chosen, engine, accuracy)
     if made.runs > MOST_RUNS:
         raise SettingError("sweep", None, f"has {made.runs} runs, more than {MOST_RUNS}", "vary fewer values")
     for point in range(1, made.points + 1):
