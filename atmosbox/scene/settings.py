@@ -402,12 +402,7 @@ class SceneSettings:
         """Raise the error of :meth:`refusal` where the settings do not fit together; a scene may override this."""
 
     def refusal(
-        self,
-        name: str,
-        problem: str,
-        *remedy: Given | str,
-        at_most: float | None = None,
-        at_least: float | None = None,
+        self, name: str, problem: str, *remedy: Given | str, at_most: float | None = None, at_least: float | None = None
     ) -> SettingError:
         """Return the error for a setting that does not go with the others.
 
