@@ -197,7 +197,7 @@ def test_a_refusal_says_what_to_write_in_python():
         (lambda: ab.run("lifting-dry", molecule=300), "give molecules=4000."),
         (lambda: ab.run("lifting-dry", engine="exakt"), 'give engine="exact".'),
         (lambda: ab.run("lifting-dry", accuracy="good"), 'accuracy="'),
-        (lambda: ab.run("lifting-dri"), "atmosbox.scenes() shows all."),
+        (lambda: ab.run("lifting-dri"), "`atmosbox.scenes()` shows all."),
         (lambda: ab.sweep("temperature", {}), "give vary={"),
         (lambda: ab.sweep("temperature", {"molecules": [100]}, members=0), "give members=1."),
         (lambda: ab.sweep("temperature", {"molecules": "100:x"}), 'give vary={"molecules": "'),

@@ -24,7 +24,7 @@ __all__ = ["MOST_RUNS", "Plan", "member_seed", "plan"]
 
 MOST_RUNS = 100_000
 """Greatest number of runs of one sweep."""
-_MEMBERS = Parameter("members", "1", 8, 1, MOST_RUNS, kind="int", given_as=Option)
+_MEMBERS = Parameter("members", "1", 8, 1, 1_000_000, kind="int", given_as=Option)
 
 
 def member_seed(seed: int, point: int, member: int) -> int:
