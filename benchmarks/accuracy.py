@@ -29,7 +29,7 @@ from atmosbox import scenarios  # noqa: E402
 from atmosbox.errors import AtmosboxError  # noqa: E402
 from atmosbox.file.netcdf import read  # noqa: E402
 from atmosbox.file.provenance import parameters  # noqa: E402
-from atmosbox.scene.parameter import Parameter  # noqa: E402
+from atmosbox.scene.settings import Parameter  # noqa: E402
 from atmosbox.simulation.accuracy import said  # noqa: E402
 from atmosbox.simulation.preparation import usual_engine  # noqa: E402
 from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
@@ -46,8 +46,8 @@ FEWEST = 4
 
 def varies(module: Any) -> list[str]:
     """Return the settings that a scene's ladder varies, in order to trade accuracy for time."""
-    own = module.Settings.model_fields
-    return sorted({series.vary for series in module.ladder} & set(own))
+    own = {parameter.name for parameter in module.Settings.describe()}
+    return sorted({series.vary for series in module.ladder} & own)
 
 
 def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:

@@ -67,7 +67,7 @@ numpydoc_xref_param_type = False
 
 # Their pages are on the network, and the site has to be built, and read, without one.
 nitpick_ignore_regex = [
-    (r"py:.*", r"(numpy|np|npt|xarray|xr|netCDF4|matplotlib|pydantic|pathlib|types|typing|collections|os)(\..*)?"),
+    (r"py:.*", r"(numpy|np|npt|xarray|xr|netCDF4|matplotlib|pathlib|types|typing|collections|os)(\..*)?"),
     (r"py:class", r"ArrayLike|NDArray|Figure|Path|Progress|RunDataset|Show"),
 ]
 

@@ -36,7 +36,7 @@ from atmosbox.engine import (
     maxwell_velocities,
     rotational_energies,
 )
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -131,7 +131,7 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse discs that rotate."""
         if self.plane and self.rotation:
-            raise SettingError("rotation", True, "is not for the discs of a plane", "give --set rotation=off")
+            raise self.refusal("rotation", "is not for the discs of a plane", Setting("rotation", False))
 
 
 class Column:

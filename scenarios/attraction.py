@@ -38,7 +38,7 @@ from atmosbox.engine import (
     lattice_positions,
     maxwell_velocities,
 )
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
     Air,
     Clusters,
@@ -120,29 +120,18 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a liquid where there is none, a box too small for two surfaces, and heat without a thermostat."""
         if self.heating and (self.start != "drop" or self.bath != "random" or self.air):
-            name, value, only = next(
-                (name, getattr(self, name), only)
-                for name, only in (("start", "drop"), ("bath", "random"), ("air", 0.0))
-                if getattr(self, name) != only
-            )
-            raise SettingError(name, value, "is not for heating", f"give --set {name}={only}, or --set heating=0")
+            wanted: dict[str, str | float] = {"start": "drop", "bath": "random", "air": 0.0}
+            name, only = next(pair for pair in wanted.items() if getattr(self, pair[0]) != pair[1])
+            raise self.refusal(name, "is not for heating", Setting(name, only), " or ", Setting("heating", 0.0))
         warmth = _warmth(self)
         if self.start != "vapour" and not warmth < 0.97 * law.WELL_CRITICAL_TEMPERATURE:
             most = 0.97 * law.SIMPLE_FLUIDS[self.substance].critical_temperature * self.attraction
-            raise SettingError(
-                "temperature",
-                f"{self.temperature:g} K",
-                f"is too warm for a {self.start} of this {self.substance}",
-                f"give --set temperature={math.floor(most)} or less, or --set start=vapour",
-            )
+            problem = f"is too warm for a {self.start} of this {self.substance}"
+            raise self.refusal("temperature", problem, ", or ", Setting("start", "vapour"), at_most=math.floor(most))
         sides, _ = _sides(self)
         if min(sides) < 2.2 * RANGE:
-            raise SettingError(
-                "molecules",
-                self.molecules,
-                "are too few for a box in which none attracts its own image",
-                "give more of them, or --set start=vapour",
-            )
+            problem = "are too few for a box in which none attracts its own image"
+            raise self.refusal("molecules", problem, "give more of them, or ", Setting("start", "vapour"))
         held = math.prod(sides) * math.pi / 6.0 * law.WELL_CRITICAL_DENSITY * (self.density + self.air)
         if self.start == "vapour" and held > 0.45 * math.prod(sides):
             raise SettingError(
@@ -198,9 +187,7 @@ def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.
     inner, outer = order[: int(liquid)], order[int(1.1 * liquid) :]
     others = n - len(inner) + air
     if others > len(outer):
-        raise SettingError(
-            "density", settings.density, f"leaves no vapour beside a {settings.start}", "give less, or less air"
-        )
+        raise settings.refusal("density", f"leaves no vapour beside a {settings.start}", "give less, or less air")
     return np.asarray(sites[np.concatenate([inner, outer[_shuffled(len(outer), rng)[:others]]])])
 
 

@@ -23,7 +23,6 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers
-from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
     DropSizes,
@@ -89,12 +88,8 @@ class Settings(SceneSettings):
         """Refuse so much vapour that no air is left."""
         most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
         if self.si.humidity > most:
-            raise SettingError(
-                "humidity",
-                f"{self.humidity:g} %",
-                f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC",
-                f"give --set humidity={math.floor(100.0 * most)}percent or less",
-            )
+            problem = f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC"
+            raise self.refusal("humidity", problem, at_most=math.floor(100.0 * most))
 
 
 def _start(settings: Settings, *, ideal: bool) -> MoistBox:

@@ -28,7 +28,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import HeatBath, Periodic, RandomNumbers, Specular, maxwell_velocities, rotational_energies
-from atmosbox.errors import SettingError
+from atmosbox.errors import Option
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -144,12 +144,8 @@ class Settings(SceneSettings):
         light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
         most = math.floor(100.0 * HEIGHTS * light) / 100.0
         if self.gravity > most:
-            raise SettingError(
-                "gravity",
-                f"{self.gravity:g} m/s2",
-                f"is so large that the box is more than {HEIGHTS:g} scale heights high",
-                f"give --set gravity={most:g} or less, or a lower height",
-            )
+            problem = f"is so large that the box is more than {HEIGHTS:g} scale heights high"
+            raise self.refusal("gravity", problem, ", or a lower height", at_most=most)
 
 
 class Box:
@@ -167,12 +163,9 @@ class Box:
         self.height = rounded(math.sqrt(n / (density * aspect)))
         least = LOWEST[self.thin]
         if self.height < least:
-            raise SettingError(
-                "molecules",
-                n,
-                f"are too few for a box {aspect:g} times as wide as high",
-                f"give --set molecules={math.ceil(least**2 * density * aspect)} or more",
-            )
+            enough = math.ceil(least**2 * density * aspect)
+            problem = f"are too few for a box {aspect:g} times as wide as high"
+            raise settings.refusal("molecules", problem, at_least=enough)
         self.width = rounded(self.height * aspect)
         self.density = n / (self.height * self.width)
         across = rounded((math.sqrt(2.0) * math.pi * self.density) ** -0.5) if self.thin else 1.0
@@ -189,9 +182,7 @@ class Box:
         try:
             pressure = float(self.rest().pressure[0])
         except ValueError as error:
-            raise SettingError(
-                "packing", settings.packing, f"is too much: {error}", "give less packing or a warmer ceiling"
-            ) from error
+            raise settings.refusal("packing", f"is too much: {error}", "give less, or a warmer ceiling") from error
         self.scale = Scale(scale.length, scale.mass, energy, si.surface_pressure / (pressure * scale.pressure))
         self.rows = int(min(max(round(math.sqrt(n / (CROWD * aspect))), 4), 16))
         self.columns = int(min(max(round(aspect * self.rows), 4), 64))
@@ -273,7 +264,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the box at its start."""
     box = Box(settings, engine)
     if settings.rotation and not box.thin:
-        raise SettingError("rotation", True, "is not for the discs of a plane", "give --engine dsmc")
+        raise settings.refusal("rotation", "is not for the discs of a plane", Option("engine", "dsmc"))
     n, scale = settings.molecules, box.scale
     rng = RandomNumbers(settings.seed)
     position, kT = _start(box, settings, engine, rng)

@@ -23,7 +23,6 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Periodic, RandomNumbers, Specular, maxwell_velocities
-from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -86,31 +85,17 @@ class Settings(SceneSettings):
         filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
         if filled > 0.1:
             widest = math.floor(100.0 * self.diameter * (0.1 / filled) ** (1.0 / 3.0)) / 100.0
-            raise SettingError(
-                "diameter",
-                f"{self.diameter:g} nm",
-                f"is too wide for a gas of {self.pressure:g} hPa",
-                f"give --set diameter={widest:g}nm or less",
-            )
+            raise self.refusal("diameter", f"is too wide for a gas of {self.pressure:g} hPa", at_most=widest)
         density, side = _box(self)
         path = float(law.mean_free_path(density, 1.0))
         paths = (self.si.length / self.si.diameter - 1.0) / path
         if paths < LEAST_PATHS:
             least = math.ceil((LEAST_PATHS * path + 1.0) * self.diameter)
-            raise SettingError(
-                "length",
-                f"{self.length:g} nm",
-                f"is only {paths:.1f} mean free paths long, so that the gases fly through each other",
-                f"give --set length={least}nm or more, or a larger diameter or pressure",
-            )
+            problem = f"is only {paths:.1f} mean free paths long, so that the gases fly through each other"
+            raise self.refusal("length", problem, ", or a larger diameter or pressure", at_least=least)
         if side < 3.0:
             least = math.ceil(self.molecules * (3.0 / side) ** 2)
-            raise SettingError(
-                "molecules",
-                self.molecules,
-                f"fill a box only {side:.1f} diameters wide",
-                f"give --set molecules={least} or more",
-            )
+            raise self.refusal("molecules", f"fill a box only {side:.1f} diameters wide", at_least=least)
 
 
 def _box(settings: Settings) -> tuple[float, float]:

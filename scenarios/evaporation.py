@@ -25,7 +25,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Pool, RandomNumbers
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -91,31 +91,21 @@ class Settings(SceneSettings):
         saturated = float(law.saturation_vapor_pressure(self.si.temperature))
         if saturated >= self.si.pressure:
             coldest = float(law.dewpoint(self.si.pressure)) - 273.15
-            raise SettingError(
-                "temperature",
-                f"{self.temperature:g} degC",
-                f"makes water boil at {self.pressure:g} hPa, which drives the piston out without end",
-                f"give --set temperature={math.floor(coldest)}degC or less"
-                if coldest >= -60.0
-                else f"give --set pressure={math.ceil(saturated / 100.0)}hPa or more",
-            )
+            problem = f"makes water boil at {self.pressure:g} hPa, which drives the piston out without end"
+            if coldest < -60.0:
+                least = Setting("pressure", f"{math.ceil(saturated / 100.0)}hPa")
+                raise self.refusal("temperature", problem, least, " or more")
+            raise self.refusal("temperature", problem, at_most=math.floor(coldest))
         most = self.si.pressure / saturated
         if self.si.humidity > 0.95 * most:
-            raise SettingError(
-                "humidity",
-                f"{self.humidity:g} %",
-                f"is so much vapour that hardly any air is left at {self.pressure:g} hPa and {self.temperature:g} degC",
-                f"give --set humidity={math.floor(95.0 * most)}percent or less",
-            )
+            place = f"{self.pressure:g} hPa and {self.temperature:g} degC"
+            problem = f"is so much vapour that hardly any air is left at {place}"
+            raise self.refusal("humidity", problem, at_most=math.floor(95.0 * most))
         filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
         if filled > 0.1:
             widest = self.diameter * (0.1 / filled) ** (1.0 / 3.0)
-            raise SettingError(
-                "diameter",
-                f"{self.diameter:g} nm",
-                f"is too wide for {self.pressure:g} hPa: air must be a gas for its vapour to saturate at e_s",
-                f"give --set diameter={math.floor(100.0 * widest) / 100.0:g}nm or less",
-            )
+            problem = f"is too wide for {self.pressure:g} hPa: air must be a gas for its vapour to saturate at e_s"
+            raise self.refusal("diameter", problem, at_most=math.floor(100.0 * widest) / 100.0)
 
 
 def _start(settings: Settings, *, ideal: bool) -> AirOverPool:

@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.errors import SettingError
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene.ascent import (
     MoistAscent,
@@ -77,12 +76,7 @@ class Settings(SceneSettings):
         """Refuse a valley above its mountains, and a dewpoint above the temperature."""
         lower = min(self.first, self.second)
         if self.valley > lower:
-            raise SettingError(
-                "valley",
-                f"{self.valley:g} km",
-                f"is higher than the lower mountain, {lower:g} km",
-                f"give --set valley={lower:g}km or less",
-            )
+            raise self.refusal("valley", f"is higher than the lower mountain, {lower:g} km", at_most=lower)
         refuse_supersaturation(self.dewpoint, self.temperature)
 
 

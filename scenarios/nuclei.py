@@ -25,7 +25,6 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, RandomNumbers, clear_of_drops
-from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -90,25 +89,18 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a box without drops, so much vapour that no air is left, and drops that fill the box."""
         if not self.salted + self.pure:
-            raise SettingError("salted", self.salted, "and pure = 0 leave no drop to watch", "give --set salted=1")
+            raise self.refusal("salted", "and pure = 0 leave no drop to watch", at_least=1)
         most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
         if self.si.humidity > most:
-            raise SettingError(
-                "humidity",
-                f"{self.humidity:g} %",
-                f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC",
-                f"give --set humidity={math.floor(100.0 * most)}percent or less",
-            )
+            problem = f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC"
+            raise self.refusal("humidity", problem, at_most=math.floor(100.0 * most))
         growth = _growth(self)
         widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
         gap = growth.box.side * growth.box.scale.length / _side(self)
         if 2.0 * self.drop_size * widest > gap:
-            raise SettingError(
-                "drop_size",
-                f"{self.drop_size:g}",
-                f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away",
-                f"give --set drop_size={math.floor(50.0 * gap / widest) / 100.0:g} or less, or fewer drops",
-            )
+            problem = f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away"
+            most = math.floor(50.0 * gap / widest) / 100.0
+            raise self.refusal("drop_size", problem, ", or fewer drops", at_most=most)
 
 
 def _start(settings: Settings, *, ideal: bool) -> MoistBox:

@@ -69,7 +69,7 @@ def test_a_checkpoint_keeps_the_run_so_far_and_the_finished_run_takes_its_place(
 
 def test_a_checkpoint_refuses_a_bad_place_before_the_run(tmp_path):
     write(run_so_far(3), tmp_path / "run.nc")
-    with pytest.raises(FileError, match="--force"):
+    with pytest.raises(FileError, match="force=True"):
         Checkpoint(tmp_path / "run.nc")
     assert Checkpoint(tmp_path / "run.nc", force=True).finish(run_so_far(5)) == tmp_path / "run.nc"
 

@@ -55,16 +55,16 @@ def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
         ("stepped:delta", "stepped:delta=value"),
         ("stepped:delta=soon", "stepped:delta="),
         ("stepped:delta=-1", "stepped:delta="),
-        ("stepped:delta=0.1,delta=0.2", "stepped:delta once"),
+        ("stepped:delta=0.1,delta=0.2", 'stepped:delta" once'),
         ("stepped:motion=eule", "stepped:motion=euler"),
         ("dsmc:threads=0", "dsmc:threads=1"),
     ]
     for text, fix in cases:
-        with pytest.raises(SettingError, match=f"give --engine {fix}"):
+        with pytest.raises(SettingError, match=f'give engine="{fix}'):
             choose(text)
     changed = choose("stepped:applet,smooth_walls=clamp")
     assert str(changed) == "stepped:rule=index-order,motion=euler,smooth_walls=clamp"
-    with pytest.raises(UnknownSettingError, match="give --engine stepped:delta=1"):
+    with pytest.raises(UnknownSettingError, match='give engine="stepped:delta=1"'):
         choose("stepped:delt=1")
     with pytest.raises(UnknownSettingError, match="give one of collisions"):
         choose("exact:delta=1")

@@ -4,17 +4,21 @@ import pickle
 from atmosbox import errors
 from atmosbox.errors import (
     AtmosboxError,
+    Command,
     ConfigError,
     DiskFullError,
     EngineError,
     FileError,
+    Option,
     PackingError,
     PhysicsError,
+    Setting,
     SettingError,
     SoundingError,
     UnitError,
     UnknownSceneError,
     UnknownSettingError,
+    on_command_line,
     shown,
 )
 
@@ -41,9 +45,9 @@ def made(error):
             "temperature",
             "-5 K",
             "is below the lowest allowed, 1 K to 2000 K",
-            "give --set temperature=25degC",
+            Setting("temperature", "25degC"),
         )
-    return error("The disk is full.")
+    return error("The disk is full", "delete something, or give another ", Option("out"))
 
 
 def test_every_error_is_an_atmosbox_error_and_a_builtin_with_a_status():
@@ -62,9 +66,9 @@ def test_the_tree_here_and_in_the_docstring_is_complete():
 
 def test_the_text_of_an_error_is_its_sentence():
     for error in [error for error, _, _ in TREE]:
-        expected = "The disk is full."
+        expected = "The disk is full: delete something, or give another out."
         if issubclass(error, SettingError):
-            expected = "temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=25degC."
+            expected = 'temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give temperature="25degC".'
         assert str(made(error)) == expected
 
 
@@ -77,15 +81,29 @@ def test_errors_survive_the_way_back_from_another_process():
             assert vars(twin) == vars(original)
 
 
-def test_a_setting_error_keeps_its_parts():
-    error = made(UnitError)
-    assert (error.setting, error.value, error.fix) == ("temperature", "-5 K", "give --set temperature=25degC")
-
-
 def test_a_setting_error_without_a_value_starts_with_the_setting_alone():
-    assert str(SettingError("--set x", None, "has no value", "give --set x=1")) == (
-        "--set x has no value: give --set x=1."
-    )
+    assert str(SettingError("x", None, "has no value", Setting("x", 1))) == "x has no value: give x=1."
+
+
+def test_each_interface_says_in_its_own_words_what_to_give():
+    for given, typed, python in [
+        (Setting("molecules", 200), "give --set molecules=200", "give molecules=200"),
+        (Setting("height", "2km"), "give --set height=2km", 'give height="2km"'),
+        (Setting("title", "a run"), "give --set title='a run'", 'give title="a run"'),
+        (Setting("rotation", False), "give --set rotation=off", "give rotation=False"),
+        (Setting("height"), "give --set height", "give height"),
+        (Option("jobs", 1), "give --jobs 1", "give jobs=1"),
+        (Option("force", True), "give --force", "give force=True"),
+        (Option("save_molecules"), "give --save-molecules", "give save_molecules"),
+        (Option("vary", {"x": "1,2"}), "give --vary x=1,2", 'give vary={"x": "1,2"}'),
+        (Option("vary", {"x": None}), "give --vary x", 'give vary={"x": ...}'),
+        (Command("list"), "type atmosbox list", "type atmosbox.scenes()"),
+        (Command("run", ("a b",)), "type atmosbox run 'a b'", 'type atmosbox.run("a b")'),
+        (Command("live", ("x",)), "type atmosbox live x", "type atmosbox live x"),
+    ]:
+        error = FileError("It cannot be", given, " instead")
+        assert error.said(on_command_line) == f"It cannot be: {typed} instead."
+        assert str(error) == f"It cannot be: {python} instead."
 
 
 class Stranger:

@@ -115,7 +115,7 @@ def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path, mon
 
 def test_a_run_without_molecules_or_velocities_says_what_to_do(box):
     bare = ab.run("temperature", molecules=50, duration="1 ns", save_molecules=False)
-    with pytest.raises(FileError, match="--save-molecules"):
+    with pytest.raises(FileError, match="save_molecules=True"):
         extended_xyz(bare)
     with pytest.raises(FileError, match="speeds and no velocities"):
         extended_xyz(box.drop_vars("molecule_velocity"))

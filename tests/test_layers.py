@@ -31,7 +31,7 @@ LAYERS = {
     "theory": Layer("", "numpy scipy", lazily="metpy"),
     "file": Layer("version errors", "numpy xarray netCDF4"),
     "scenarios": Layer("errors"),
-    "scene": Layer("engine errors theory", "numpy scipy pydantic", lazily="metpy pint xarray file"),
+    "scene": Layer("engine errors theory", "numpy scipy", lazily="metpy pint xarray file"),
     "a scenario": Layer("engine errors theory scene", "numpy", lazily="xarray"),
     "simulation": Layer("version engine errors scenarios scene", "numpy", lazily="xarray file"),
     "plot": Layer("callable_room errors theory file scene scenarios", "numpy xarray matplotlib metpy"),
@@ -39,7 +39,7 @@ LAYERS = {
     "film": Layer("errors theory file scene plot", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
     "sheet": Layer(
         "version errors file scenarios scene simulation",
-        "numpy jinja2 markdown_it pydantic uncertainties",
+        "numpy jinja2 markdown_it uncertainties",
         lazily="reportlab matplotlib",
     ),
     "sweep": Layer(

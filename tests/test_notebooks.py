@@ -33,7 +33,7 @@ class Small:
         """Return settings of fewer molecules, unless they follow from an accuracy that is asked for."""
         if "accuracy" in settings:
             return settings
-        of_scene = set(type(prepare(scene, {}).settings).model_fields)
+        of_scene = prepare(scene, {}).settings.as_dict()
         least = {"molecules": 200} | ({"ascent": 150} if "ascent" in of_scene else {})
         return settings | {name: min(settings.get(name, most), most) for name, most in least.items()}
 

@@ -261,7 +261,7 @@ def test_a_dataset_that_could_not_be_read_again_is_not_written(tmp_path):
 def test_a_file_is_replaced_only_by_force(tmp_path):
     path = output.write(lifting(), tmp_path / "run.nc")
     before = path.read_bytes()
-    with pytest.raises(FileError, match=r"exists already.*--force.*--out"):
+    with pytest.raises(FileError, match=r"exists already.*force=True.*out"):
         output.write(everything(), path)
     assert path.read_bytes() == before
     output.write(everything(), path, force=True)
@@ -279,7 +279,7 @@ def test_no_function_that_saves_replaces_a_file_unasked(tmp_path):
     ]:
         path = tmp_path / f"mine.{ending}"
         path.write_text("mine")
-        with pytest.raises(FileError, match=r"exists already: add --force"):
+        with pytest.raises(FileError, match=r"exists already: add force=True"):
             save(None, path)
         assert path.read_text() == "mine"
 
@@ -403,7 +403,7 @@ def test_whatever_a_file_is_made_of_it_is_there_whole_or_not_at_all(tmp_path):
     def stopped(error):
         with whole_file(path) as temporary:
             temporary.write_bytes(b"half")
-            raise error
+            raise error("it stopped")
 
     for error in (KeyboardInterrupt, RuntimeError, FileError):
         with pytest.raises(error):

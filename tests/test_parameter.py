@@ -2,8 +2,8 @@
 
 import pytest
 
-from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.scene.parameter import Parameter, by_name
+from atmosbox.errors import Setting, SettingError, UnknownSettingError
+from atmosbox.scene.settings import Parameter, by_name
 
 SWITCH = Parameter("rotation", "", True, kind="bool")
 START = Parameter("start", "", "equilibrium", choices=("equilibrium", "bottom-heavy"), kind="str")
@@ -20,13 +20,13 @@ def test_a_switch_is_turned_by_words_and_by_numbers():
 
 def test_other_words_do_not_turn_a_switch():
     for word in ["", "maybe", 2, None, 10**400, [True]]:
-        with pytest.raises(SettingError, match=r"is neither on nor off: give --set rotation=on\.$"):
+        with pytest.raises(SettingError, match=r"is neither on nor off: give rotation=True\.$"):
             SWITCH.parse(word)
 
 
 def test_a_word_is_one_of_the_choices_however_it_is_spelled():
     assert START.parse("Bottom_Heavy") == "bottom-heavy"
-    with pytest.raises(SettingError, match=r"give --set start=bottom-heavy\.$"):
+    with pytest.raises(SettingError, match=r"give start=\"bottom-heavy\"\.$"):
         START.parse("botom-heavy")
     with pytest.raises(SettingError, match="is not one of equilibrium, bottom-heavy"):
         START.parse(5)
@@ -54,8 +54,18 @@ def test_a_refusal_gives_the_nearest_value_that_is_allowed():
         (COUNT, "1,2,3", "123"),
         (HEIGHT, "13,5", "2km"),
     ]:
-        with pytest.raises(SettingError, match=rf": give --set {parameter.name}={fix}\.$"):
+        with pytest.raises(SettingError, match=rf": give {parameter.name}=\"?{fix}\"?\.$"):
             parameter.parse(value)
+
+
+def test_a_bare_temperature_that_can_only_be_in_kelvin_is_told_to_be_given_in_kelvin():
+    warm = Parameter("temperature", "degC", 15.0, -80.0, 60.0)
+    for value, kelvin in [("300", "300K"), (273.5, "273.5K"), ("300 degC", None), ("500", None)]:
+        with pytest.raises(SettingError) as refused:
+            warm.parse(value)
+        told = [part.value for part in refused.value.remedy if isinstance(part, Setting)]
+        assert told == ["60degC"] + [kelvin] * (kelvin is not None)
+    assert str(refused.value).endswith('allowed, -80 degC to 60 degC: give temperature="60degC".')
 
 
 def test_a_value_is_typed_as_the_shell_takes_it():
@@ -71,8 +81,8 @@ def test_a_name_may_be_spelled_with_a_dash():
 
 def test_an_unknown_name_is_refused_with_the_nearest():
     for name, value, fix in [
-        ("box_hight", "3 km", r"give --set box_height='3 km'\.$"),
-        ("Molecules", 5, r"give --set molecules=4000\.$"),
+        ("box_hight", "3 km", r"give box_height=\"3 km\"\.$"),
+        ("Molecules", 5, r"give molecules=4000\.$"),
         ("zzz", 1, r"give one of rotation, start, molecules, box_height\.$"),
     ]:
         with pytest.raises(UnknownSettingError, match=fix):

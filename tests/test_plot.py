@@ -924,8 +924,8 @@ def test_each_format_is_what_it_says_and_carries_the_settings_of_its_run(tmp_pat
 
 def test_an_unknown_format_is_refused_with_those_that_are_known(tmp_path):
     for name, format, words in [
-        ("figure.gif", None, "format = gif is unknown: give a file name or --format of png, svg or pdf"),
-        ("figure", None, "format is not given: give a file name or --format of png, svg or pdf"),
+        ("figure.gif", None, "format = gif is unknown: give a file name or format of png, svg or pdf"),
+        ("figure", None, "format is not given: give a file name or format of png, svg or pdf"),
         ("figure.png", "pdf", "format = pdf does not go with the file name figure.png"),
     ]:
         with pytest.raises(SettingError, match=words):
@@ -933,7 +933,7 @@ def test_an_unknown_format_is_refused_with_those_that_are_known(tmp_path):
 
 
 def test_an_unknown_theme_is_refused_with_those_that_are_known(tmp_path):
-    with pytest.raises(SettingError, match="give --theme notes or --theme slides"):
+    with pytest.raises(SettingError, match='give theme="notes" or theme="slides"'):
         plot.figure(small([280.0]), "poster")
     with pytest.raises(SettingError, match="theme = poster"):
         plot.save(small([280.0]), tmp_path / "figure.png", theme="poster")
@@ -946,7 +946,7 @@ def broken(**changes):
 
 def test_a_file_that_cannot_be_drawn_is_refused_in_a_sentence():
     cases = [
-        (xr.Dataset(), "it was not written by atmosbox run"),
+        (xr.Dataset(), "atmosbox did not write it"),
         (broken(atmosbox_panels="[]"), "not in the form that atmosbox writes"),
         (broken(atmosbox_panels='{"format": 9, "panels": []}'), "reads format 1"),
         (broken(atmosbox_panels=to_json(())), "its scene names no panels"),

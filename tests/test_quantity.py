@@ -13,8 +13,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from atmosbox.errors import SettingError, UnitError
-from atmosbox.scene.parameter import Parameter
-from atmosbox.scene.quantity import phrase, typed
+from atmosbox.scene.conversion import phrase, typed
+from atmosbox.scene.settings import Parameter
 
 UNITS = [
     "1", "%", "kg kg-1", "g kg-1", "K", "degC", "Pa", "hPa", "m", "km", "um", "nm", "s", "h", "ns", "ps", "m s-1",
@@ -37,7 +37,7 @@ def refusal(parameter, value, error=UnitError):
     assert type(caught.value) is error
     assert sentence.isprintable()
     assert sentence.startswith(f"{parameter.name} = ")
-    parameter.parse(sentence.removesuffix(".").rpartition(f": give --set {parameter.name}=")[2])
+    parameter.parse(caught.value.remedy[0].value)
     return sentence
 
 
@@ -238,7 +238,7 @@ def test_any_text_is_a_finite_number_or_refused_in_one_sentence(text, unit):
 def test_pint_is_imported_only_for_a_unit_that_no_scene_declares():
     script = (
         "import sys\n"
-        "from atmosbox.scene.parameter import Parameter\n"
+        "from atmosbox.scene.settings import Parameter\n"
         "for text, unit in (('25 °C', 'K'), ('9.8m/s2', 'm s-2'), ('6.5 K/km', 'K km-1'), ('1013 mbar', 'hPa')):\n"
         "    Parameter('x', unit, 1.0).parse(text)\n"
         "assert not {'pint', 'numpy'} & set(sys.modules)\n"

@@ -186,13 +186,13 @@ def test_a_scenario_may_be_named_with_underscores():
 
 def test_an_unknown_scenario_offers_the_nearest_ones():
     for name in ("lifting-dri", "Lifting-Dry", "lifting"):
-        with pytest.raises(UnknownSceneError, match=f"{name}.*lifting-dry.*atmosbox list"):
+        with pytest.raises(UnknownSceneError, match=f"{name}.*lifting-dry.*atmosbox.scenes"):
             scenarios.load(name)
 
 
 def test_a_hopeless_name_is_pointed_to_the_list():
     for name in ("", "zzzz", "os", "__init__", "-", "a\0b", "x" * 10_000, "two\nlines"):
-        with pytest.raises(UnknownSceneError, match="atmosbox list") as caught:
+        with pytest.raises(UnknownSceneError, match=r"atmosbox\.scenes") as caught:
             scenarios.load(name)
         assert len(str(caught.value).splitlines()) == 1
         assert len(str(caught.value)) < 200
@@ -236,7 +236,7 @@ def test_an_edited_own_file_is_read_anew(tmp_path):
 
 
 def test_a_missing_own_file_is_refused(tmp_path):
-    with pytest.raises(FileError, match=r"no file .*nowhere\.py.*atmosbox list"):
+    with pytest.raises(FileError, match=r"no file .*nowhere\.py.*atmosbox.scenes"):
         scenarios.load(tmp_path / "nowhere.py")
 
 

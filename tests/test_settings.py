@@ -6,11 +6,9 @@ import pickle
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import Field, ValidationError
 
-from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.scene.parameter import Parameter
-from atmosbox.scene.settings import SceneSettings, setting
+from atmosbox.errors import Setting, SettingError, UnknownSettingError
+from atmosbox.scene.settings import Parameter, SceneSettings, setting
 
 
 class Settings(SceneSettings):
@@ -26,7 +24,7 @@ class Settings(SceneSettings):
 
     def check(self):
         if self.temperature > 400.0 and not self.rotation:
-            raise SettingError("rotation", "off", "does not go with 400 degC", "give --set rotation=on")
+            raise SettingError("rotation", "off", "does not go with 400 degC", Setting("rotation", True))
 
 
 def refusal(error=SettingError, **values):
@@ -110,7 +108,7 @@ def test_settings_survive_the_way_to_another_process():
 
 
 def test_settings_cannot_be_changed():
-    with pytest.raises(ValidationError):
+    with pytest.raises(AttributeError, match="cannot be changed"):
         Settings().temperature = 20.0
 
 
@@ -118,40 +116,29 @@ def test_there_is_no_way_round_the_checks():
     cases = [
         lambda values: Settings(**values),
         Settings.from_user,
-        Settings.model_validate,
-        lambda values: Settings.model_validate_json(json.dumps(values)),
-        lambda values: Settings().model_copy(update=values),
         lambda values: Settings.with_defaults(**values)(),
     ]
     for make in cases:
         assert make({"temperature": "77 degF"}).si.temperature == 298.15
-        with pytest.raises((ValueError, TypeError), match="temperature = 5 m is a length"):
+        with pytest.raises(SettingError, match="temperature = 5 m is a length"):
             make({"temperature": "5 m"})
-
-
-def test_a_copy_with_another_value_is_that_value_in_si_units_too():
-    settings = Settings(rotation=False)
-    assert settings.si is settings.si
-    copied = settings.model_copy(update={"temperature": "30 degC"})
-    assert (copied.si.temperature, copied.rotation) == (303.15, False)
-    assert settings.si.temperature == 288.15
 
 
 def test_a_value_out_of_range_is_refused_with_range_and_fix():
     assert refusal(temperature=-200) == (
-        "temperature = -200 degC is below the lowest allowed, -100 degC to 500 degC: give --set temperature=-100degC."
+        'temperature = -200 degC is below the lowest allowed, -100 degC to 500 degC: give temperature="-100degC".'
     )
     assert refusal(molecules="2e7") == (
-        "molecules = 2e7 is above the highest allowed, 1 to 10000000: give --set molecules=10000000."
+        "molecules = 2e7 is above the highest allowed, 1 to 10000000: give molecules=10000000."
     )
-    assert refusal(seed=-1) == ("seed = -1 is below the lowest allowed, 0 to 9223372036854775807: give --set seed=0.")
+    assert refusal(seed=-1) == ("seed = -1 is below the lowest allowed, 0 to 9223372036854775807: give seed=0.")
 
 
 def test_a_text_must_be_a_text_and_not_empty_unless_its_default_is():
     class Named(SceneSettings):
         title: str = setting("a run", "", "what stands above the figure")
 
-    with pytest.raises(SettingError, match=r'^title = " " is empty: give --set title=\'a run\'\.$'):
+    with pytest.raises(SettingError, match=r'^title = " " is empty: give title="a run"\.$'):
         Named(title=" ")
     assert Settings(title=" ").title == ""
     assert refusal(title=5).startswith("title = 5 is not a text")
@@ -159,16 +146,16 @@ def test_a_text_must_be_a_text_and_not_empty_unless_its_default_is():
 
 def test_an_unknown_setting_is_refused_with_the_nearest():
     assert refusal(UnknownSettingError, temprature="25 degC") == (
-        "temprature = 25 degC is not a setting of this scene: give --set temperature='25 degC'."
+        'temprature = 25 degC is not a setting of this scene: give temperature="25 degC".'
     )
-    with pytest.raises(UnknownSettingError, match="give --set temperature="):
+    with pytest.raises(UnknownSettingError, match="give temperature="):
         Settings.with_defaults(temprature=20.0)
 
 
 def test_the_nearest_is_one_that_the_value_can_be_given_to():
     assert "rotation=" not in refusal(UnknownSettingError, rotatoin="2 ns")
-    assert "give --set rotation=off" in refusal(UnknownSettingError, rotatoin="off")
-    assert "give --set duration=" in refusal(UnknownSettingError, duratoin="9000 ns")
+    assert 'give rotation="off"' in refusal(UnknownSettingError, rotatoin="off")
+    assert "give duration=" in refusal(UnknownSettingError, duratoin="9000 ns")
 
 
 def test_settings_that_do_not_fit_together_are_refused_by_the_scene():
@@ -205,24 +192,11 @@ def test_the_default_as_it_is_typed_is_read_again():
         assert parameter.parse(typed.strip("'")) == parameter.default
 
 
-def test_every_setting_is_in_the_json_schema():
-    properties = Settings.model_json_schema()["properties"]
-    assert properties["temperature"]["minimum"] == -100.0
-    assert properties["temperature"]["unit"] == "degC"
-    assert properties["start"]["enum"] == ["equilibrium", "bottom-heavy"]
-    assert properties["seed"]["description"] == "seed of the random numbers"
-
-
 def test_a_field_that_is_not_declared_as_a_setting_is_the_authors_mistake():
     with pytest.raises(TypeError, match="must be declared with setting"):
 
         class Bare(SceneSettings):
             temperature: float = 15.0
-
-    with pytest.raises(TypeError, match="must be declared with setting"):
-
-        class Plain(SceneSettings):
-            temperature: float = Field(15.0, description="temperature")
 
 
 def test_a_setting_of_another_type_is_the_authors_mistake():
@@ -267,7 +241,11 @@ numbers = st.booleans() | st.integers() | st.floats()
 others = st.none() | st.text() | st.binary() | st.lists(st.integers()) | st.dates()
 
 
-@given(st.dictionaries(st.sampled_from(list(Settings.model_fields)), numbers | others, max_size=3))
+@given(
+    st.dictionaries(
+        st.sampled_from([parameter.name for parameter in Settings.describe()]), numbers | others, max_size=3
+    )
+)
 def test_any_values_make_settings_or_are_refused_in_one_sentence(values):
     try:
         settings = Settings.from_user(values)

@@ -159,28 +159,28 @@ def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
     first = runner.prepare(name, SMALL[name])
     words = read(text_of(first.module))
     (made,) = execute([Trial("A", "", first)])
-    assert words.row
-    for row in words.row:
-        headline = filled(row.headline, {"A": made})
+    assert words["row"]
+    for row in words["row"]:
+        headline = filled(row["headline"], {"A": made})
         if headline not in made.headlines:  # a run with few molecules, or a fast one, may have no level to report
             assert headline in ("cloud_base", "lfc", "el", "cin", "cape", "mean_liquid_temperature", "metpy_cape")
             continue
         found = made.headlines[headline]
-        assert row.unit == found.display_unit
-        assert filled(row.label, {"A": made}).startswith(found.label)
+        assert row["unit"] == found.display_unit
+        assert filled(row["label"], {"A": made}).startswith(found.label)
 
 
 def test_every_question_has_an_answer_and_a_place_for_it():
     for name in NAMES:
         words = read(text_of(scenarios.load(name)))
-        for section in (words.notice, words.try_, words.differ, words.further):
+        for section in (words[name] for name in SECTIONS):
             assert section, name
-            assert all(question.answer and question.lines != 0 for question in section)
-        assert words.predict
-        for prediction in words.predict:
-            assert prediction.answer
-            assert bool(prediction.choices) == bool(prediction.right)
-        assert words.leaves_out
+            assert all(question["answer"] and question["lines"] != 0 for question in section)
+        assert words["predict"]
+        for prediction in words["predict"]:
+            assert prediction["answer"]
+            assert bool(prediction["choices"]) == bool(prediction["right"])
+        assert words["leaves_out"]
 
 
 def test_the_words_of_a_sheet_stand_beside_every_scene_and_the_file_of_no_scene_is_left():
@@ -191,12 +191,12 @@ def test_the_words_of_a_sheet_stand_beside_every_scene_and_the_file_of_no_scene_
 @pytest.mark.parametrize("temperature", [0.0, 17.84, 30.0])
 def test_the_latent_heat_in_the_answers_of_evaporation_is_that_of_theory(temperature):
     first = runner.prepare("evaporation", {"temperature": temperature})
-    last = read(text_of(first.module)).further[-1]
+    last = read(text_of(first.module))["further"][-1]
     run = {"A": Trial("A", "", first)}
     latent = float(moist_adiabat.water_latent_heat_vaporization(temperature + 273.15)) / 1e6
-    (told,) = re.findall(r"([\d.]+) MJ/kg", filled(last.answer, run))
+    (told,) = re.findall(r"([\d.]+) MJ/kg", filled(last["answer"], run))
     assert float(told) == pytest.approx(latent, abs=0.001)
-    (carried,) = re.findall(r"along (\d+) zJ", filled(last.ask, run))
+    (carried,) = re.findall(r"along (\d+) zJ", filled(last["ask"], run))
     edges = np.linspace(90e-21, 250e-21, 2001)
     density = theory.leaving_energy_density(edges, temperature + 273.15)
     mean = float((density * np.diff(edges) * 0.5 * (edges[1:] + edges[:-1])).sum())
@@ -205,7 +205,9 @@ def test_the_latent_heat_in_the_answers_of_evaporation_is_that_of_theory(tempera
 
 def test_the_latent_heat_that_condensation_names_gives_the_growth_of_the_vapour_pressure():
     first = runner.prepare("condensation", {})
-    text = filled(read(text_of(first.module)).differ[1].answer.partition("To leave")[2], {"A": Trial("A", "", first)})
+    text = filled(
+        read(text_of(first.module))["differ"][1]["answer"].partition("To leave")[2], {"A": Trial("A", "", first)}
+    )
     (latent,) = re.findall(r"= (\d+) k T", text)
     cold, warm = 293.15, 303.15
     grown = theory.saturation_vapor_pressure(warm) / theory.saturation_vapor_pressure(cold)
@@ -343,7 +345,7 @@ def test_words_that_cannot_be_understood_are_refused_with_file_and_entry(own):
     cases = [
         ("goal = 3", "goal is no text: put it in quotes"),
         ("goal = 'a'\nhurry = 'b'", "hurry is unknown"),
-        ("goal = 'a'\n[[notice]]\nasks = 'b'", "notice 1, ask is missing: add it"),
+        ("goal = 'a'\n[[notice]]\nasks = 'b'", "notice 1, asks is unknown: correct the name"),
         ("goal = 'a'\n[[notice]]\nask = ' '", "notice 1, ask is empty"),
         ("goal = 'a'\n[notice]\nask = 'b'", "write [[notice]] with two brackets"),
         ("goal = 'a'\n[[notice]]\nask = 'b'\nlines = 99", "notice 1, lines"),
@@ -351,7 +353,7 @@ def test_words_that_cannot_be_understood_are_refused_with_file_and_entry(own):
         ("goal = 'a'\n[[predict]]\nask = 'b'\nchoices = 'c'", "a list of texts for choices"),
         ("goal = 'a'\n[[predict]]\nask = 'b'\nchoices = ['c']\nright = 2", "right = 2"),
         ("goal = 'a'\n[[predict]]\nask = 'b'\nsketch = {x = 'c'}", "predict 1, sketch, y is missing"),
-        ("goal = 'a'\n" + 4 * "[[change]]\ntitle = 'b'\nset = {seed = 3}\n", "keep three"),
+        ("goal = 'a'\n" + 4 * "[[change]]\ntitle = 'b'\nset = {seed = 3}\n", "keep 3"),
         ("goal = ", "is not TOML"),
         ("goal = '{{ A.molecule }}'", "goal: molecule is asked for before run A was made"),
         ("goal = 'a'\n[[change]]\ntitle = 'b'\nset = {seed = '{{ A.sed }}'}", "change 1, set, seed: sed is asked for"),
@@ -474,7 +476,7 @@ def test_without_reportlab_a_pdf_is_refused_before_a_run_is_spent_and_markdown_i
     for name in [each for each in sys.modules if each.split(".")[0] == "reportlab"]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "reportlab", None)
-    with pytest.raises(FileError, match="type pip install reportlab, or give --format md"):
+    with pytest.raises(FileError, match='type pip install reportlab, or give format="md"'):
         sheets.check(tmp_path / "sheet.pdf")
     assert sheets.check(tmp_path / "sheet.md") == tmp_path / "sheet.md"
     monkeypatch.undo()

@@ -45,11 +45,11 @@ def test_an_assignment_is_a_name_and_a_value():
 
 def test_what_is_no_assignment_is_refused_with_its_text():
     cases = [
-        (["temperature"], '--set temperature has no "=" between name and value: give --set temperature=value.'),
-        (["=5"], "--set =5 has no name: give --set name=value."),
-        (["a="], "--set a= has no value: give --set a=value."),
-        (["a=''"], "--set a='' has no value: give --set a=value."),
-        (["a-b=1", "a_b=2"], "a_b = 2 is given twice: give --set a_b once."),
+        (["temperature"], 'temperature has no "=" between name and value: give temperature="value".'),
+        (["=5"], '=5 has no name: give name="value".'),
+        (["a="], 'a= has no value: give a="value".'),
+        (["a=''"], "a='' has no value: give a=\"value\"."),
+        (["a-b=1", "a_b=2"], "a_b = 2 is given twice: give a_b once."),
     ]
     for items, sentence in cases:
         with pytest.raises(SettingError) as caught:

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from atmosbox import interface, scenarios  # noqa: E402
-from atmosbox.scene.parameter import Parameter  # noqa: E402
+from atmosbox.scene.settings import Parameter  # noqa: E402
 
 STUB = ROOT / "atmosbox" / "__init__.pyi"
 HEAD = '''"""What an editor knows of `atmosbox`: made by tools/stub.py from the scenes, not to be edited by hand."""

@@ -12,7 +12,7 @@ import tomllib
 from typing import Any, NamedTuple
 
 from atmosbox.errors import ConfigError, FileError, shown
-from atmosbox.scene.parameter import Value
+from atmosbox.scene.settings import Value
 from atmosbox.scene.spelling import nearest
 
 __all__ = ["Asked", "load_config"]

@@ -22,7 +22,7 @@ from atmosbox.cli.option import (
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
+from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, on_command_line
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -89,8 +89,8 @@ def sweep(
             scene,
             vary or (),
             settings=assignments(values or ()),
-            members=_whole("members", members, 1),
-            seed=None if seed is None else _whole("seed", seed, 0, 2**63 - 1),
+            members=members,
+            seed=seed,
             engine=engine,
             accuracy=accuracy,
         )
@@ -100,7 +100,6 @@ def sweep(
         path = unused(default, lambda each: is_taken(each, grid))
         if not quiet:
             say_number(default, path)
-    processes = None if jobs is None else _whole("jobs", jobs, 1, 4096)
     if dry_run:
         _describe(grid, path, as_json=as_json, quiet=quiet)
         return
@@ -109,7 +108,7 @@ def sweep(
             swept = run(
                 grid,
                 path,
-                jobs=processes,
+                jobs=jobs,
                 scheduler=scheduler,
                 force=force,
                 progress=show,
@@ -121,17 +120,6 @@ def sweep(
         raise typer.Exit(stop.exit_code) from stop
     _say(grid, swept, path, as_json=as_json, quiet=quiet)
     _judge(grid, swept, path)
-
-
-def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
-    """Return the whole number that was given for an option."""
-    from atmosbox.scene.parameter import Parameter
-
-    try:
-        return int(Parameter(option, "1", 8, low, high, kind="int").parse(text))
-    except SettingError as error:
-        error.fix = error.fix.replace(f"--set {option}=", f"--{option} ")
-        raise
 
 
 def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
@@ -238,7 +226,7 @@ def _judge(grid: Plan, swept: Swept, path: Path) -> None:
         )
     if not swept.ledger <= LEDGER_LIMIT:
         if failed is not None:
-            tell(f"error: {failed}")
+            tell(f"error: {failed.said(on_command_line)}")
         raise PhysicsError(
             f"The energy budget of a run of this sweep is off by {swept.ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
             f"see member_ledger in {path}."

@@ -15,7 +15,7 @@ from typing import Never, ParamSpec, TypeVar
 
 import typer
 
-from atmosbox.errors import AtmosboxError, FileError, shown
+from atmosbox.errors import AtmosboxError, FileError, on_command_line, shown
 from atmosbox.text.stream import say, say_json, tell
 
 __all__ = ["guarded", "prints_to_stderr", "say", "say_json", "stoppable", "tell", "width"]
@@ -132,7 +132,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             raise
         except AtmosboxError as error:
             # A file name may contain anything, even a new line, but the message must be one line.
-            tell(f"error: {shown(str(error), longest=LONGEST_SENTENCE)}")
+            tell(f"error: {shown(error.said(on_command_line), longest=LONGEST_SENTENCE)}")
             raise typer.Exit(error.exit_code) from error
         except KeyboardInterrupt as error:
             tell("stopped")

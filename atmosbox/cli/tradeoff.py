@@ -14,7 +14,7 @@ from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
 from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
-from atmosbox.errors import SettingError
+from atmosbox.errors import Option
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -51,16 +51,12 @@ def tradeoff(
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
     from atmosbox.plot.tradeoff_figure import recommended
-    from atmosbox.scene.parameter import Parameter
+    from atmosbox.scene.settings import Parameter
     from atmosbox.scene.spelling import assignments
     from atmosbox.trade.tradeoff import measure
 
-    try:
-        seconds = float(Parameter("budget", "s", 40.0, 1.0, 1e6).parse(budget))
-        first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int").parse(seed or "1"))
-    except SettingError as error:
-        error.fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
-        raise
+    seconds = float(Parameter("budget", "s", 40.0, 1.0, 1e6, given_as=Option).parse(budget))
+    first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int", given_as=Option).parse(seed or "1"))
 
     def written(path: Path) -> list[Path]:
         return [path, path.with_suffix(".csv"), path.with_suffix(".png")]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.errors import FileError
+from atmosbox.errors import Command, FileError, Given, Option
 from atmosbox.file.provenance import parameters
 
 if TYPE_CHECKING:
@@ -84,14 +84,14 @@ class Molecules(NamedTuple):
         return float(np.median(seen) / self.side.max()) if seen.size else 1.0
 
 
-def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
+def molecules(dataset: xr.Dataset, *otherwise: Given | str) -> Molecules:
     """Return the molecules of a run and their box.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         A run with ``--save-molecules``, or one of a planar scene, which always keeps its discs.
-    otherwise : str
+    *otherwise : str or Given
         What else a user can do if there are no molecules: the end of the error message.
 
     Returns
@@ -109,20 +109,21 @@ def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
     >>> import xarray as xr
     >>> molecules(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "./mine.py"}'}))
     Traceback (most recent call last):
-    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run ./mine.py --save-molecules.
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("./mine.py", save_molecules=True).
     """
     source = dataset.encoding.get("source") or "The run"
     if "rung" in dataset.dims:
-        raise FileError(f"{source} holds a comparison of engines and no molecules: type atmosbox plot to draw it.")
+        draw = Command("plot", (str(source),))
+        raise FileError(f"{source} holds a comparison of engines and no molecules", draw, " to draw it")
     discs = "disc_position" in dataset
-    again = f"type atmosbox run {parameters(dataset).get('scene', 'SCENE')} --save-molecules"
+    again = Command("run", (str(parameters(dataset).get("scene", "SCENE")), Option("save_molecules", True)))
     if not discs and "molecule_position" not in dataset:
-        raise FileError(f"{source} holds no molecules: {again}{otherwise}.")
+        raise FileError(f"{source} holds no molecules", again, *otherwise)
     if dataset.sizes.get("elapsed_time", 0) == 0:
-        raise FileError(f"{source} holds no frame, for the run was stopped before its first: {again}.")
+        raise FileError(f"{source} holds no frame, for the run was stopped before its first", again)
     missing = [name for name in (_NEEDED_OF_DISCS if discs else _NEEDED) if name not in dataset]
     if missing:
-        raise FileError(f"{source} was written by an earlier atmosbox and lacks {missing[0]}: {again}.")
+        raise FileError(f"{source} was written by an earlier atmosbox and lacks {missing[0]}", again)
     held = _discs(dataset) if discs else _molecules(dataset)
     frames = dataset.sizes["elapsed_time"]
     return Molecules(

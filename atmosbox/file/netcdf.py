@@ -129,7 +129,7 @@ def read(path: AnyPath) -> xr.Dataset:
     atmosbox.errors.FileError: no such file.nc does not exist: check the name and the folder.
     """
     source = Path(path)
-    fix = "give a file that atmosbox run has written"
+    fix = "give a file that atmosbox has written"
     if os.path.isdir(source):
         raise FileError(f"{source} is a folder: {fix}.")
     if not os.path.exists(source):

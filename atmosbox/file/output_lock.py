@@ -10,11 +10,15 @@ import time
 from pathlib import Path
 from typing import Any
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, Option
 from atmosbox.file.provenance import moment
 
-__all__ = ["BusyError", "OutputLock", "alive", "hold", "host"]
+__all__ = ["ANOTHER_NAME", "ELSEWHERE", "BusyError", "OutputLock", "alive", "hold", "host"]
 
+ELSEWHERE = ("give another place with ", Option("out"))
+"""The remedy where a file cannot be written."""
+ANOTHER_NAME = ("name another file with ", Option("out"))
+"""The remedy where a file of this name is there, or is being written."""
 ABANDONED = 3600.0
 """Seconds after which the lock of a process on another computer, which cannot be checked, counts as abandoned."""
 
@@ -95,15 +99,17 @@ class OutputLock:
         try:
             opened = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
-            raise FileError(f"{self.path} cannot be made ({error.strerror}): give another place with --out.") from error
+            raise FileError(f"{self.path} cannot be made ({error.strerror})", *ELSEWHERE) from error
         try:
             held = hold(opened)
             owner = _owner(os.read(opened, 1000))
             if held is False or (owner and self._lives(owner, held is True, opened)):
                 whose = f"process {owner['pid']} on {owner['host']} since {owner['since']}" if owner else "another run"
                 raise BusyError(
-                    f"{path} is being written by {whose}: wait for it, or name another file with --out; if it runs no "
-                    f"more, remove {self.path}."
+                    f"{path} is being written by {whose}",
+                    "wait for it, or ",
+                    *ANOTHER_NAME,
+                    f"; if it runs no more, remove {self.path}",
                 )
             with contextlib.suppress(OSError):
                 if os.path.samestat(os.fstat(opened), os.stat(self.path)):

@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeAlias
 
-from atmosbox.errors import DiskFullError, FileError, SettingError, shown
-from atmosbox.file.output_lock import alive, host
+from atmosbox.errors import DiskFullError, FileError, Option, SettingError, shown
+from atmosbox.file.output_lock import ANOTHER_NAME, ELSEWHERE, alive, host
 from atmosbox.file.provenance import moment
 
 __all__ = [
@@ -87,7 +87,7 @@ def named(
     if kind not in formats:
         problem = "is unknown" if kind else "is not given"
         known = f"{', '.join(formats[:-1])} or {formats[-1]}"
-        raise SettingError("format", kind or None, problem, f"give a file name or --format of {known}")
+        raise SettingError("format", kind or None, problem, "give a file name or ", Option("format"), f" of {known}")
     if suffix in formats and suffix != kind:
         raise SettingError("format", kind, f"does not go with the file name {path.name}", "leave one of the two out")
     if suffix != kind and path.name and not path.is_dir():
@@ -129,24 +129,24 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
     atmosbox.errors.FileError: The folder no/such/folder does not exist: type mkdir -p no/such/folder first.
     """
     if not os.fspath(path).strip():
-        raise FileError(f"The name of the file is empty: give one, such as --out {example}.")
+        raise FileError("The name of the file is empty", "give one, such as ", Option("out", example))
     found = Path(os.path.realpath(path) if os.path.islink(path) else path)
     folder = found.parent
     if os.path.isdir(found):
-        raise FileError(f"{found} is a folder: give a file in it, such as --out {found / example}.")
+        raise FileError(f"{found} is a folder", "give a file in it, such as ", Option("out", str(found / example)))
     if len(os.fsencode(found.name)) > LONGEST_NAME:
-        raise FileError(f"The name {shown(found.name)} is too long: give a shorter one with --out.")
+        raise FileError(f"The name {shown(found.name)} is too long", "give a shorter one with ", Option("out"))
     if not os.path.lexists(folder):
         words = shlex.quote(str(folder))
         raise FileError(f"The folder {words} does not exist: type mkdir -p {words} first.")
     if not os.path.isdir(folder):
-        raise FileError(f"{folder} is a file, not a folder: give another place with --out.")
+        raise FileError(f"{folder} is a file, not a folder", *ELSEWHERE)
     if os.path.exists(found) and not os.path.isfile(found):
-        raise FileError(f"{found} is a device, not a file: give another name with --out.")
+        raise FileError(f"{found} is a device, not a file", "give another name with ", Option("out"))
     if os.path.exists(found) and not force:
-        raise FileError(f"{found} exists already: add --force to replace it, or name another file with --out.")
+        raise FileError(f"{found} exists already", "add ", Option("force", True), " to replace it, or ", *ANOTHER_NAME)
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise FileError(f"Nothing may be written to the folder {folder}: give another place with --out.")
+        raise FileError(f"Nothing may be written to the folder {folder}", *ELSEWHERE)
     if shutil.disk_usage(folder).free < SMALLEST_FILE:
         raise write_failure(OSError(errno.ENOSPC, ""), found)
     moment()
@@ -334,9 +334,9 @@ def write_failure(error: OSError, path: Path) -> FileError:
     Examples
     --------
     >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
-    'The disk has no room for no/run.nc: delete something, or give another --out.'
+    'The disk has no room for no/run.nc: delete something, or give another place with out.'
     """
     if error.errno in FULL:
         kept = ", which stays as it was" if path.exists() else ""
-        return DiskFullError(f"The disk has no room for {path}{kept}: delete something, or give another --out.")
-    return FileError(f"{path} could not be written ({error.strerror or error}): give another place with --out.")
+        return DiskFullError(f"The disk has no room for {path}{kept}", "delete something, or ", *ELSEWHERE)
+    return FileError(f"{path} could not be written ({error.strerror or error})", *ELSEWHERE)

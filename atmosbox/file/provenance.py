@@ -173,5 +173,5 @@ def parameters(dataset: xr.Dataset) -> dict[str, Any]:
         found = None
     if not isinstance(found, dict):
         name = dataset.encoding.get("source", "This dataset")
-        raise FileError(f"{name} does not say which run it holds: give a file that atmosbox run has written.")
+        raise FileError(f"{name} does not say which run it holds: give a file that atmosbox has written.")
     return found

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from atmosbox.errors import FileError, SettingError
+from atmosbox.errors import FileError, Option, SettingError
 from atmosbox.file.molecules import molecules
 from atmosbox.file.output_path import named, whole_file
 from atmosbox.film.film_sheet import Sheet
@@ -100,7 +100,7 @@ def save(
     >>> import xarray as xr
     >>> save(xr.Dataset(), "parcel.avi")
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: format = avi is unknown: give a file name or --format of gif or mp4.
+    atmosbox.errors.SettingError: format = avi is unknown: give a file name or format of gif or mp4.
     """
     path, kind = named(path, format, FORMATS, force=force, what="film")
     look = sized(find(theme), kind)
@@ -109,7 +109,7 @@ def save(
     count = dataset.sizes.get("elapsed_time", 0)
     if count == 0:
         raise FileError("The file has no frame to film: the run was stopped before its first one; run it again.")
-    held = None if graphs else molecules(dataset, otherwise=", or film its graphs alone with --graphs")
+    held = None if graphs else molecules(dataset, ", or film its graphs alone with ", Option("graphs", True))
     smooth = held is not None and held.step < _SMOOTH
     chosen = pace(count, fps=fps, seconds=seconds, smooth=smooth, along=None if smooth else _along(dataset))
     with style(look), whole_file(path) as temporary:
@@ -137,8 +137,8 @@ def _check_movie_program() -> None:
 
         imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError) as error:
-        fix = "type pip install 'atmosbox[movie]', or give --format gif"
-        raise SettingError("format", "mp4", "needs a program that is not installed", fix) from error
+        problem, fix = "needs a program that is not installed", "type pip install 'atmosbox[movie]', or give "
+        raise SettingError("format", "mp4", problem, fix, Option("format", "gif")) from error
 
 
 def _write_mp4(pictures: Iterator[Image.Image], path: Path, chosen: Pace) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, Option
 from atmosbox.file.molecules import Molecules
 from atmosbox.film.graph import Graph, GraphPainter, chosen
 from atmosbox.film.running import Running
@@ -73,8 +73,11 @@ class Sheet:
         panels = chosen(dataset, panels_of(dataset), running)
         if held is None and not panels:
             raise FileError(
-                "The file has no graph that grows with time: run the scene again with --save-molecules, and film it "
-                "without --graphs."
+                "The file has no graph that grows with time",
+                "run the scene again with ",
+                Option("save_molecules", True),
+                ", and film it without ",
+                Option("graphs"),
             )
         # The share of the width that the box has beside its graphs.
         beside = sum(panel.kind in ("profile", "skewt") for panel in panels)

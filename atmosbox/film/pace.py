@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import Option, SettingError
 
 __all__ = ["Pace", "pace"]
 
@@ -95,16 +95,16 @@ def pace(
     0.5
     """
     if fps is not None and not 0.1 <= fps <= FASTEST:
-        raise SettingError("fps", fps, f"is not between 0.1 and {FASTEST:g} pictures a second", "give --fps 10")
+        raise SettingError("fps", fps, f"is not between 0.1 and {FASTEST:g} pictures a second", Option("fps", 10))
     if seconds is not None and not 0.1 <= seconds <= LONGEST:
-        raise SettingError("seconds", seconds, f"is not between 0.1 and {LONGEST:g} seconds", "give --seconds 12")
+        raise SettingError("seconds", seconds, f"is not between 0.1 and {LONGEST:g} seconds", Option("seconds", 12))
     rate = fps or (SMOOTH if smooth else APART)
     if seconds is not None and fps is None:
         rate = min(rate, max(frames / seconds, 0.1))
     number = min(frames, max(1, round(rate * (seconds or SECONDS))))
     if number > MOST:
         problem = f"at {rate:g} pictures a second are {number} pictures, more than the {MOST} that a film may have"
-        raise SettingError("seconds", seconds, problem, f"give --seconds {math.floor(MOST / rate)} or less")
+        raise SettingError("seconds", seconds, problem, Option("seconds", math.floor(MOST / rate)), " or less")
     if along is not None and frames > 1:
         wanted = np.linspace(along[0], along[-1], number)
         return Pace(np.interp(wanted, along, np.arange(frames)).round().astype(np.int64), rate)

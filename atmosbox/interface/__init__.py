@@ -1,9 +1,8 @@
 """The public functions of `atmosbox`, which scripts and notebooks call.
 
-Read in this order: `wording` (error messages with Python arguments), `notebook` (detects a notebook, and shows
-progress in it), `run_dataset` (a dataset that prints its results first), `measurement` (`run`, `resume`, `open`),
-`grid` (`sweep`), `drawing` (`plot`, `compare`), `inline_page` (`show`), `catalogue` (`scenes`). Large libraries are
-imported when a function needs them.
+Read in this order: `notebook` (detects a notebook, and shows progress in it), `run_dataset` (a dataset that prints
+its results first), `measurement` (`run`, `resume`, `open`), `grid` (`sweep`), `drawing` (`plot`, `compare`),
+`inline_page` (`show`), `catalogue` (`scenes`). Large libraries are imported when a function needs them.
 """
 
 from atmosbox.interface.catalogue import Printed, scenes

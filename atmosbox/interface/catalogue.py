@@ -6,8 +6,6 @@ import html
 import os
 from collections.abc import Sequence
 
-from atmosbox.interface.wording import in_python
-
 __all__ = ["Printed", "scenes"]
 
 _WIDTH = 100
@@ -70,9 +68,8 @@ def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:
     if scene is None:
         found = scenarios.summaries()
         return Printed(list(found), scene_lines(found, _WIDTH))
-    with in_python():
-        module = scenarios.load(scene)
-        declared = module.Settings.describe()
-        story = (module.__doc__ or "").strip().partition("\n\n")[0].replace("\n", " ")
-        lines = [f"{os.fspath(scene)}: {story}", "", *parameter_lines(declared, _WIDTH)]
-        return Printed([parameter.name for parameter in declared], lines)
+    module = scenarios.load(scene)
+    declared = module.Settings.describe()
+    story = (module.__doc__ or "").strip().partition("\n\n")[0].replace("\n", " ")
+    lines = [f"{os.fspath(scene)}: {story}", "", *parameter_lines(declared, _WIDTH)]
+    return Printed([parameter.name for parameter in declared], lines)

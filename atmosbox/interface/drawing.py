@@ -8,7 +8,6 @@ import os
 from typing import TYPE_CHECKING, Literal
 
 from atmosbox.errors import SettingError
-from atmosbox.interface.wording import in_python
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,12 +86,11 @@ def plot(
     from atmosbox.plot.figure_file import drawn, save
     from atmosbox.plot.theme import find
 
-    with in_python():
-        find(theme)
-        dataset = opened(run)
-        if out is not None:
-            save(dataset, out, theme=theme, force=force, with_box=with_box)
-        return _shown(drawn(dataset, theme, with_box=with_box), theme)
+    find(theme)
+    dataset = opened(run)
+    if out is not None:
+        save(dataset, out, theme=theme, force=force, with_box=with_box)
+    return _shown(drawn(dataset, theme, with_box=with_box), theme)
 
 
 class Comparison:
@@ -170,17 +168,16 @@ def compare(
     from atmosbox.plot.theme import find
     from atmosbox.text.comparison_table import comparison_lines
 
-    with in_python():
-        if not 2 <= len(runs) <= MOST:
-            raise SettingError("runs", None, f"are {len(runs)}", "give two to six")
-        find(theme)
-        called = [Path(run).stem if isinstance(run, str | os.PathLike) else _ordinal(k) for k, run in enumerate(runs)]
-        datasets = [opened(run) for run in runs]
-        names = naming(datasets, called)
-        if out is not None:
-            save(datasets, names, out, theme=theme, force=force)
-        drawing = _shown(drawn(datasets, names, theme)[0], theme)
-        return Comparison(drawing, "\n".join(comparison_lines(called, names, compared(datasets), _WIDTH)))
+    if not 2 <= len(runs) <= MOST:
+        raise SettingError("runs", None, f"are {len(runs)}", "give two to six")
+    find(theme)
+    called = [Path(run).stem if isinstance(run, str | os.PathLike) else _ordinal(k) for k, run in enumerate(runs)]
+    datasets = [opened(run) for run in runs]
+    names = naming(datasets, called)
+    if out is not None:
+        save(datasets, names, out, theme=theme, force=force)
+    drawing = _shown(drawn(datasets, names, theme)[0], theme)
+    return Comparison(drawing, "\n".join(comparison_lines(called, names, compared(datasets), _WIDTH)))
 
 
 def _ordinal(k: int) -> str:

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.interface.notebook import Show, progress_bar
-from atmosbox.interface.wording import in_python
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,7 +81,7 @@ def sweep(
     from atmosbox.sweep.conduct import sweep as conduct
     from atmosbox.sweep.plan import plan
 
-    with in_python(), progress_bar(os.fspath(scene), progress) as show:
+    with progress_bar(os.fspath(scene), progress) as show:
         grid = plan(
             scene,
             [f"{name}={_typed(values)}" for name, values in vary.items()],

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from atmosbox.interface.notebook import in_notebook
-from atmosbox.interface.wording import in_python
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,9 +59,8 @@ class InlinePage:
         """
         from atmosbox.file.output_path import check_writable, write_whole
 
-        with in_python():
-            target = check_writable(path, force, example="page.html")
-            write_whole(target, self.text.encode("utf-8"))
+        target = check_writable(path, force, example="page.html")
+        write_whole(target, self.text.encode("utf-8"))
         return target
 
 
@@ -111,10 +109,9 @@ def show(
     from atmosbox.interface.drawing import opened
     from atmosbox.page.page_file import page_text
 
-    with in_python():
-        if not 1 <= len(runs) <= 2:
-            raise SettingError("runs", None, f"are {len(runs)}", "give one run, or two to stand side by side")
-        page = InlinePage(page_text([opened(run) for run in runs], theme=theme, language=language), height)
+    if not 1 <= len(runs) <= 2:
+        raise SettingError("runs", None, f"are {len(runs)}", "give one run, or two to stand side by side")
+    page = InlinePage(page_text([opened(run) for run in runs], theme=theme, language=language), height)
     if not in_notebook():
         _open(page)
     return page

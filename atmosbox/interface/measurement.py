@@ -6,7 +6,6 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.interface.notebook import Show, progress_bar
-from atmosbox.interface.wording import in_python
 
 if TYPE_CHECKING:
     from atmosbox.interface.run_dataset import RunDataset
@@ -91,7 +90,7 @@ def run(
     from atmosbox.interface.run_dataset import as_run
     from atmosbox.simulation.runner import run as start
 
-    with in_python(), progress_bar(os.fspath(scene), progress) as show:
+    with progress_bar(os.fspath(scene), progress) as show:
         return as_run(
             start(
                 scene,
@@ -150,7 +149,7 @@ def resume(
     from atmosbox.interface.run_dataset import as_run
     from atmosbox.simulation.runner import resume as go_on
 
-    with in_python(), progress_bar(os.fspath(path), progress) as show:
+    with progress_bar(os.fspath(path), progress) as show:
         return as_run(go_on(path, scene=scene, out=out, force=force, progress=show))
 
 
@@ -182,5 +181,4 @@ def open(path: str | os.PathLike[str]) -> RunDataset:
     from atmosbox.file.netcdf import read
     from atmosbox.interface.run_dataset import as_run
 
-    with in_python():
-        return as_run(read(path))
+    return as_run(read(path))

@@ -128,7 +128,7 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     elif unknown:
         why = f"has an instrument that is not compiled for the page, {unknown[0]}"
     if why is not None:
-        raise SettingError("scene", prepared.scene, why, elsewhere(prepared.scene))
+        raise SettingError("scene", prepared.scene, why, *elsewhere(prepared.scene))
 
 
 def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> Bench:

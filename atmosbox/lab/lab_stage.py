@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.file.variables import known
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
-from atmosbox.scene.conversion import to_si
+from atmosbox.scene.conversion import phrase, to_si
 from atmosbox.scene.instruments import Environment, wall_laws
-from atmosbox.scene.quantity import phrase
 from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
 

@@ -17,7 +17,7 @@ from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.lab.wasm_module import module_bytes
 from atmosbox.page.control import setting_controls
 from atmosbox.page.lesson import lesson_of
-from atmosbox.scene.parameter import Parameter
+from atmosbox.scene.settings import Parameter
 from atmosbox.simulation.preparation import Prepared, prepare
 
 __all__ = ["AS_WRITTEN", "Start", "lab_starts", "served_start"]

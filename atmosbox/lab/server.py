@@ -19,7 +19,7 @@ from http.server import BaseHTTPRequestHandler
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.errors import AtmosboxError, Command, Given, Option, Setting, SettingError, on_command_line
 from atmosbox.lab.lab_file import lab_data
 from atmosbox.lab.lab_start import served_start
 from atmosbox.lab.wasm_module import elsewhere
@@ -155,7 +155,7 @@ class Server(socketserver.ThreadingTCPServer):
         free = {told.name for told in checked.describe() if told.kind == "str" and not told.choices}
         for name, text in settings.items():  # a text may name a file, and reading it would tell what is in it
             if field_name(name) in free and text not in self._texts:
-                raise SettingError(name, text, "cannot be chosen in the page", f"give --set {name} to atmosbox live")
+                raise SettingError(name, text, "cannot be chosen in the page", Command("live", (Setting(name, text),)))
         prepared = replace(self._written, settings=checked.from_user(settings))
         _, starts, module, stored = self._data(prepared)
         return json.dumps({"starts": starts, "module": module, "stored": stored})
@@ -167,6 +167,11 @@ class Server(socketserver.ThreadingTCPServer):
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Leave a browser that has gone alone, and print nothing."""
+
+
+def _in_page(given: Given) -> str:
+    """Return how something is given in the page: a setting by its name there, all else on the command line."""
+    return f"{given.name}={given.value}" if isinstance(given, Setting) else on_command_line(given)
 
 
 class _Answer(BaseHTTPRequestHandler):
@@ -199,9 +204,9 @@ class _Answer(BaseHTTPRequestHandler):
         try:
             return self._send(200, self.server.plan(settings), "application/json")
         except AtmosboxError as error:
-            other = elsewhere(self.server.scene)
-            error.reword(lambda words: words.replace("--set ", "").replace("give --engine dsmc", other))
-            return self._send(422, str(error))
+            if any(isinstance(part, Option) and part.name == "engine" for part in error.remedy):
+                error.remedy = elsewhere(self.server.scene)  # the page has one engine
+            return self._send(422, error.said(_in_page))
         except Exception as error:
             return self._send(500, f"The box cannot be built ({type(error).__name__}: {error}).")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.engine import StalledError
-from atmosbox.errors import EngineError, SettingError
+from atmosbox.errors import EngineError, Setting, SettingError
 from atmosbox.lab.lab_stage import plain
 from atmosbox.lab.moist_plan import moist_tables
 from atmosbox.lab.wasm_module import elsewhere
@@ -57,8 +57,10 @@ def short_run(prepared: Prepared) -> xr.Dataset:
             "scene",
             prepared.scene,
             "crowds so many molecules together that the page runs out of room for them",
-            "give it fewer molecules, begin it where it comes to rest, as atmosphere with --set start=equilibrium, or "
-            + elsewhere(prepared.scene),
+            "give it fewer molecules, begin it where it comes to rest, as atmosphere with ",
+            Setting("start", "equilibrium"),
+            ", or ",
+            *elsewhere(prepared.scene),
         )
     found, _ = run.dataset("lab", settle=0, judged=False)
     return found

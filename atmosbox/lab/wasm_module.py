@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.engine.core.kernel_cache import code_of
-from atmosbox.errors import EngineError
+from atmosbox.errors import Command, EngineError, Option
 
 __all__ = ["BESIDE", "FOLDER", "SCENES", "elsewhere", "module_bytes", "module_name", "source_stamp", "stamp_of"]
 
@@ -79,15 +79,17 @@ def stamp_of(content: bytes) -> str:
     return gzip.decompress(content).rpartition(b"sources")[2].decode("ascii")
 
 
-def elsewhere(scene: str) -> str:
-    """Return what to do with a scene that cannot run in a page, as the end of a sentence.
+def elsewhere(scene: str) -> tuple[Command | str, ...]:
+    """Return what to do with a scene that cannot run in a page: the parts of the end of a sentence.
 
     Examples
     --------
-    >>> elsewhere("temperature")
-    'show a run of it: atmosbox run temperature --save-molecules, then atmosbox view'
+    >>> from atmosbox.errors import on_command_line
+    >>> print(EngineError("It has no piston", *elsewhere("temperature")).said(on_command_line))
+    It has no piston: show a run of it: atmosbox run temperature --save-molecules, then atmosbox view.
     """
-    return f"show a run of it: atmosbox run {scene} --save-molecules, then atmosbox view"
+    run = Command("run", (scene, Option("save_molecules", True)))
+    return "show a run of it: ", run, ", then ", Command("view")
 
 
 def module_bytes(name: str, scene: str) -> bytes:
@@ -101,11 +103,9 @@ def module_bytes(name: str, scene: str) -> bytes:
     path = FOLDER / f"{name}.wasm.gz"
     if not path.is_file():
         if not any(FOLDER.glob("*.wasm.gz")):
-            problem = "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
-        else:
-            problem = (
-                f"The settings of {scene} need kernels that no WebAssembly module of this version has "
-                f"({name}): leave them as they are, or {elsewhere(scene)}."
+            raise EngineError(
+                "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
             )
-        raise EngineError(problem)
+        problem = f"The settings of {scene} need kernels that no WebAssembly module of this version has ({name})"
+        raise EngineError(problem, "leave them as they are, or ", *elsewhere(scene))
     return path.read_bytes()

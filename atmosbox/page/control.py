@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from atmosbox.scene.knob import Knob
-from atmosbox.scene.parameter import Parameter, Value
+from atmosbox.scene.settings import Parameter, Value
 
 __all__ = ["knob_controls", "setting_controls"]
 

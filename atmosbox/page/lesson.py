@@ -26,8 +26,7 @@ from typing import Any
 
 from atmosbox.errors import ConfigError, FileError
 from atmosbox.file.variables import variable
-from atmosbox.scene.conversion import from_si
-from atmosbox.scene.quantity import converted, number_and_unit
+from atmosbox.scene.conversion import converted, from_si, number_and_unit
 
 __all__ = ["Lesson", "Preset", "lesson_of"]
 

@@ -61,7 +61,7 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
     >>> import xarray as xr
     >>> pages([xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "temperature"}'})])
     Traceback (most recent call last):
-    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run temperature --save-molecules.
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("temperature", save_molecules=True).
     """
     headings = changed(runs) if len(runs) > 1 else [""]
     every = [molecules(run) for run in runs]

@@ -203,7 +203,7 @@ def _shorter(seen: Molecules, stage: Mapping[str, Any], of_side: float) -> str:
     if own != unit or not number:
         return "A shorter run shows them."
     short = float(seen.time[-1]) * _NEAR / of_side
-    return f"A run with --set duration={float(f'{short:.1g}'):g}{unit} shows them."
+    return f"A run with duration={float(f'{short:.1g}'):g}{unit} shows them."
 
 
 def _units(scene: str) -> dict[str, str]:

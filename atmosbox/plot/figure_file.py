@@ -66,7 +66,7 @@ def save(
     >>> import xarray as xr
     >>> save(xr.Dataset(), "parcel.gif")
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: format = gif is unknown: give a file name or --format of png, svg or pdf.
+    atmosbox.errors.SettingError: format = gif is unknown: give a file name or format of png, svg or pdf.
     """
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
-from atmosbox.errors import FileError
+from atmosbox.errors import Command, FileError, Option
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer, headlines
@@ -170,7 +170,9 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     if dataset.attrs.get("atmosbox_status", "complete") != "complete":
         panels = tuple(begun for panel in panels if (begun := _begun(dataset, panel)) is not None)
         if not panels:
-            raise FileError("The run was stopped too early for a figure: let it go on with atmosbox run --resume.")
+            raise FileError(
+                "The run was stopped too early for a figure", "let it go on with ", Command("run", (Option("resume"),))
+            )
     return tuple(replace(panel, lines=_found(dataset, panel)) for panel in panels)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib
 import matplotlib.style
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import SettingError, either
 
 OKABE_ITO = ("#000000", "#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
 """Okabe and Ito's colours, which people who do not see the difference between red and green can tell apart."""
@@ -117,7 +117,7 @@ def find(name: str) -> Theme:
     True
     """
     if name not in THEMES:
-        raise SettingError("theme", name, "is no theme", f"give --theme {' or --theme '.join(THEMES)}")
+        raise SettingError("theme", name, "is no theme", *either("theme", THEMES))
     return THEMES[name]
 
 

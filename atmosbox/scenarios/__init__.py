@@ -23,7 +23,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from atmosbox.errors import FileError, UnknownSceneError, shown
+from atmosbox.errors import Command, FileError, Option, UnknownSceneError, shown
 
 __all__ = ["REQUIRED", "Summary", "load", "names", "place", "summaries"]
 
@@ -182,15 +182,15 @@ def _complete(module: ModuleType) -> ModuleType:
 def _unknown(text: str) -> UnknownSceneError:
     """Return the error for a name that no scenario has, with the nearest ones that exist."""
     near = difflib.get_close_matches(text.lower().replace("_", "-"), names(), n=3, cutoff=0.5)
+    problem = f"There is no scene {shown(text)}"
     if os.path.isfile(f"{text}.py"):
-        fix = f"to run your own file, give its path, ./{text}.py"
-    elif text.endswith(".nc"):
-        fix = f"to run the scene of a file again, type atmosbox run --from {shown(text)}"
-    elif near:
-        fix = f"did you mean {' or '.join(near)}? `atmosbox list` shows all"
-    else:
-        fix = "`atmosbox list` shows all"
-    return UnknownSceneError(f"There is no scene {shown(text)}: {fix}.")
+        return UnknownSceneError(problem, f"to run your own file, give its path, ./{text}.py")
+    if text.endswith(".nc"):
+        return UnknownSceneError(
+            problem, "to run the scene of a file again, type ", Command("run", (Option("from", text),))
+        )
+    meant = f"did you mean {' or '.join(near)}? " if near else ""
+    return UnknownSceneError(problem, f"{meant}`", Command("list"), "` shows all")
 
 
 def _load_file(path: Path) -> ModuleType:
@@ -198,14 +198,16 @@ def _load_file(path: Path) -> ModuleType:
     if os.path.isdir(path):
         raise FileError(f"{path} is a folder: give the path of the scene's .py file in it.")
     if not os.path.exists(path):
-        raise FileError(f"There is no file {path}: check its path, or take a scene that `atmosbox list` shows.")
+        raise FileError(
+            f"There is no file {path}", "check its path, or take a scene that `", Command("list"), "` shows"
+        )
     try:
         source = path.read_bytes()
     except OSError as error:
         raise FileError(f"{path} cannot be read ({error.strerror}): check its permissions.") from error
 
     # A unique name, so that a user's file cannot replace a module of Python or of another library; in
-    # sys.modules, because pydantic and dataclasses look a module up by its name.
+    # sys.modules, because dataclasses look a module up by its name.
     location = str(path.resolve())
     module = ModuleType(f"{_OWN}{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
     module.__file__ = location

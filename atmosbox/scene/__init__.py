@@ -3,7 +3,7 @@
 A scene of your own needs little more than the names below, ``from atmosbox.scene import Setup, Panel, ...``; each is
 imported when it is first used.
 
-`settings`     what a user may set: `parameter`, `quantity`, `conversion` and `spelling` check it
+`settings`     what a user may set; `conversion` reads numbers with units, `spelling` names
 `setup`        what a scene hands to the run: its box, its instruments, its times
 `units`        the scale of a scene: engine units to SI
 `engines`      the engines a scene may use, and their options

@@ -1,8 +1,7 @@
-"""Conversion between units, in any of their spellings.
+"""Units and numbers with units: read from what a user types, such as "25 degC" or 4e3, converted, and written.
 
 The units that scenes declare are in a table. Any other unit that a user types, from feet to inches of mercury, is
-looked up in pint, which is imported only then: the first such unit takes 0.4 s, one of the table 0.0001 s. The input of
-a user is read by :mod:`atmosbox.scene.quantity`.
+looked up in pint, which is imported only then: the first such unit takes 0.4 s, one of the table 0.0001 s.
 """
 
 from __future__ import annotations
@@ -11,11 +10,26 @@ import functools
 import math
 import re
 import unicodedata
+from decimal import Decimal, InvalidOperation
+from numbers import Integral, Real
 from typing import Any, NamedTuple
 
-from atmosbox.errors import UnitError
+from atmosbox.errors import UnitError, shown
 
-__all__ = ["MEASURES", "SIGNS", "Unit", "declared_unit", "from_si", "known_unit", "slashed", "to_si"]
+__all__ = [
+    "MEASURES",
+    "SIGNS",
+    "Unit",
+    "converted",
+    "declared_unit",
+    "from_si",
+    "known_unit",
+    "number_and_unit",
+    "phrase",
+    "slashed",
+    "to_si",
+    "typed",
+]
 
 
 class Unit(NamedTuple):
@@ -64,17 +78,17 @@ _SPELLINGS = {
 _DEGREES = re.compile(r"(?:°|\b(?i:deg(?:rees?)?))[\s_]*((?i:[cfk]|celsius|fahrenheit|kelvin))(?![A-Za-z])")
 _POWER = re.compile(r"(?<=[^\W\d])([+-]?\d+)")  # "m s-2" is "m s**-2"
 _TOWER = re.compile(r"\d\s*(?:\^|\*\*)|\d{3}")  # a power of a power would take pint years
+_QUANTITY = re.compile(
+    r"([+-]?(?:[0-9][0-9_]*\.?[0-9_]*|\.[0-9][0-9_]*)(?:e[+-]?[0-9]+)?|[+-]?(?:nan|inf(?:inity)?)(?![a-z]))\s*(.*)",
+    re.DOTALL | re.IGNORECASE,
+)
+_LONGEST = 200  # characters of a text that can be a quantity
 SIGNS = str.maketrans({"−": "-", "º": "°", "˚": "°"})
 """Other characters that keyboards and word processors write for - and °, for ``str.translate``."""
 
 
 def slashed(unit: str) -> str:
     """Return a unit in the form in which it is typed, without a blank.
-
-    Parameters
-    ----------
-    unit
-        The unit as a scene declares it.
 
     Examples
     --------
@@ -118,11 +132,6 @@ def _looked_up(name: str) -> Unit | None:
 def known_unit(text: str) -> Unit | None:
     """Return the unit of any spelling, from the table or else from pint; None if there is none.
 
-    Parameters
-    ----------
-    text
-        The unit as a user types it.
-
     Examples
     --------
     >>> known_unit("m/s^2") == known_unit("m s-2"), known_unit("blorp")
@@ -136,17 +145,7 @@ def known_unit(text: str) -> Unit | None:
 
 
 def declared_unit(unit: str) -> Unit:
-    """Return the unit that a scene declares.
-
-    Parameters
-    ----------
-    unit
-        The unit, such as "hPa", "degC", "K/km", "%", or "1" for a pure number.
-
-    Raises
-    ------
-    UnitError
-        If there is no such unit.
+    """Return the unit that a scene declares; raise UnitError if there is no such unit.
 
     Examples
     --------
@@ -219,3 +218,80 @@ def from_si(value: float, unit: str, *, difference: bool = False) -> float:
     """
     known = declared_unit(unit)
     return (value - (0.0 if difference else known.offset)) * known.down / known.up
+
+
+def phrase(value: float, unit: str) -> str:
+    """Return a number and its unit for a sentence; the unit "1" is left out.
+
+    Examples
+    --------
+    >>> phrase(25.0, "degC"), phrase(4000, "1")
+    ('25 degC', '4000')
+    """
+    number = shown(value) if isinstance(value, int) else f"{value:.12g}"
+    return number if unit in ("1", "") else f"{number} {unit}"
+
+
+def typed(value: float, unit: str) -> str:
+    """Return a number and its unit in the form in which they are typed after ``--set``, without a blank.
+
+    Examples
+    --------
+    >>> typed(25.0, "degC"), typed(9.8, "m s-2"), typed(3.0, "m s-1")
+    ('25degC', '9.8m/s2', '3m/s')
+    """
+    return phrase(value, slashed(unit)).replace(" ", "")
+
+
+def number_and_unit(value: object) -> tuple[Decimal, str]:
+    """Return a finite number with all the digits that were given, and its unit, empty for a bare number.
+
+    A ValueError says what is wrong with the value, in words that follow it.
+
+    Examples
+    --------
+    >>> number_and_unit("25 degC"), number_and_unit(4000)
+    ((Decimal('25'), 'degC'), (Decimal('4000'), ''))
+    """
+    number: float | str
+    unit = ""
+    if isinstance(value, bool) or not isinstance(value, str | Real):
+        raise ValueError("is not a number")
+    if isinstance(value, str):
+        text = value.strip().translate(SIGNS)
+        match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+        if match is None or match[2].startswith(","):
+            comma = re.match(r"[+-]?[0-9]*,[0-9]", text)
+            raise ValueError("is written with a comma" if comma else "is not a number" if text else "is empty")
+        number, unit = match[1], match[2]
+    else:
+        number = int(value) if isinstance(value, Integral) else float(value)
+    try:
+        exact = Decimal(number)
+    except InvalidOperation:  # an exponent of twenty digits
+        raise ValueError("is too large") from None
+    if not math.isfinite(exact):
+        raise ValueError("is too large" if exact.is_finite() else "is not finite")
+    return exact, unit
+
+
+def converted(number: float, unit: str, wanted: str) -> float:
+    """Return a number of one unit in another, rounded to 12 digits; a ValueError says what is wrong with its unit.
+
+    Temperatures are absolute; a degree in a product, as in "6.5 degC/km", is a difference of temperature.
+
+    Examples
+    --------
+    >>> converted(77.0, "degF", "degC"), converted(9.8, "N/kg", "m s-2")
+    (25.0, 9.8)
+    """
+    known, aim = known_unit(unit), declared_unit(wanted)
+    if known is None or unit == "1":
+        raise ValueError("has an unknown unit")
+    if known.si != aim.si:
+        raise ValueError(f"is {MEASURES.get(known.si, 'a quantity of another kind')}")
+    result = (number * known.up / known.down + known.offset - aim.offset) * aim.down / aim.up
+    if not math.isfinite(result):
+        raise ValueError("is too large")
+    # A typed number has few digits: 77 degF is 25 degC, not 25.00000000000006.
+    return float(f"{round(result, 9) if aim.offset else result:.12g}")

@@ -5,18 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from atmosbox.errors import SettingError, shown
+from atmosbox.errors import Setting, SettingError, shown
 
 __all__ = ["assignments", "field_name", "nearest", "plain"]
 
 
 def field_name(name: str) -> str:
     """Return the Python name of a setting, which a user may spell with "-" for "_".
-
-    Parameters
-    ----------
-    name
-        What was typed.
 
     Examples
     --------
@@ -29,11 +24,6 @@ def field_name(name: str) -> str:
 def plain(name: str) -> str:
     """Return a name in the form for comparison: without capitals, and with "_" for "-".
 
-    Parameters
-    ----------
-    name
-        What was typed, or what could have been.
-
     Examples
     --------
     >>> plain(" Pressure-Top")
@@ -44,13 +34,6 @@ def plain(name: str) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
     """Return the name that a user probably meant, or None.
-
-    Parameters
-    ----------
-    name
-        What was typed.
-    names
-        What could have been.
 
     Examples
     --------
@@ -68,17 +51,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 
 
 def assignments(items: Iterable[str]) -> dict[str, str]:
-    """Return the values of ``name=value``, as they are typed after each ``--set``, by name.
-
-    Parameters
-    ----------
-    items
-        The texts after each ``--set``; a value may stand in quotes.
-
-    Raises
-    ------
-    SettingError
-        If a text is not a name, "=" and a value, or names a setting again.
+    """Return the values of ``name=value``, as they are typed after each ``--set``, by name; refuse other texts.
 
     Examples
     --------
@@ -94,8 +67,8 @@ def assignments(items: Iterable[str]) -> dict[str, str]:
         if not (name and equals and value):
             lacks = "name" if equals and not name else "value" if equals else '"=" between name and value'
             known = name if name.isascii() and name.isidentifier() else "name"
-            raise SettingError(f"--set {item}", None, f"has no {lacks}", f"give --set {known}=value")
+            raise SettingError(item, None, f"has no {lacks}", Setting(known, "value"))
         if name in values:
-            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
+            raise SettingError(name, value, "is given twice", Setting(shown(name)), " once")
         values[name] = value
     return values

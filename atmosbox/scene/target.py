@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import Option, SettingError, either
 from atmosbox.scene.spelling import nearest, plain
 
 __all__ = ["FIX", "TARGETS", "Target", "parse"]
@@ -58,7 +58,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
 """The targets that have a name, the same for all scenes."""
 
 _NUMBER = re.compile(r"([0-9]+\.?[0-9]*(?:e[+-]?[0-9]{1,3})?|\.[0-9]+(?:e[+-]?[0-9]{1,3})?)\s*(\S*)", re.IGNORECASE)
-FIX = "give --accuracy lecture, or an error such as 0.5K or 2%"
+FIX = (Option("accuracy", "lecture"), ", or an error such as 0.5K or 2%")
 
 
 def parse(text: object) -> Target:
@@ -80,7 +80,7 @@ def parse(text: object) -> Target:
     ('1 % and 0.5 K', 0.5, 0.02)
     """
     if not isinstance(text, str):
-        raise SettingError("accuracy", text, "is not a text", FIX)
+        raise SettingError("accuracy", text, "is not a text", *FIX)
     word = text.strip()
     if plain(word) in TARGETS:
         return TARGETS[plain(word)]
@@ -88,12 +88,12 @@ def parse(text: object) -> Target:
     if found is None:
         near = nearest(word, TARGETS)
         problem = f"is neither one of {', '.join(TARGETS)} nor an error"
-        raise SettingError("accuracy", text, problem, f"give --accuracy {near}" if near else FIX)
+        raise SettingError("accuracy", text, problem, *((Option("accuracy", near),) if near else FIX))
     size, unit = float(found[1]), found[2]
 
     def refusal(problem: str, *units: str) -> SettingError:
-        fix = " or ".join(f"--accuracy {size:g}{one}" for one in units) if 0.0 < size <= 100.0 else ""
-        return SettingError("accuracy", text, problem, f"give {fix}" if fix else FIX)
+        fix = either("accuracy", [f"{size:g}{one}" for one in units]) if 0.0 < size <= 100.0 else ()
+        return SettingError("accuracy", text, problem, *(fix or FIX))
 
     if unit.casefold() in ("degc", "°c", "c", "degf", "°f", "f"):
         raise refusal("is a temperature and not the error of one", "K")

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from atmosbox.errors import FileError, SettingError
+from atmosbox.errors import FileError, Option, SettingError, either
 from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph
 from atmosbox.sheet.worksheet import Worksheet
 
@@ -63,10 +63,10 @@ def check_paper(paper: str) -> None:
     --------
     >>> check_paper("a5")
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: paper = a5 is unknown: give --paper a4 or --paper letter.
+    atmosbox.errors.SettingError: paper = a5 is unknown: give paper="a4" or paper="letter".
     """
     if paper not in PAPERS:
-        raise SettingError("paper", paper, "is unknown", "give --paper a4 or --paper letter")
+        raise SettingError("paper", paper, "is unknown", *either("paper", ("a4", "letter")))
 
 
 def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
@@ -131,7 +131,8 @@ def load_fonts() -> None:
         from reportlab.pdfbase import pdfmetrics
         from reportlab.pdfbase.ttfonts import TTFont
     except ImportError as error:
-        raise FileError("A sheet as PDF needs reportlab: type pip install reportlab, or give --format md.") from error
+        md = Option("format", "md")
+        raise FileError("A sheet as PDF needs reportlab", "type pip install reportlab, or give ", md) from error
     import matplotlib
 
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"

@@ -44,7 +44,7 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
     --------
     >>> check("sheet.docx")
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: format = docx is unknown: give a file name or --format of pdf or md.
+    atmosbox.errors.SettingError: format = docx is unknown: give a file name or format of pdf or md.
     """
     path, kind = named(path, format, FORMATS, force=force, what="sheet")
     check_paper(paper)

@@ -9,132 +9,146 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any
-
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictInt, ValidationError, model_validator
+from typing import Any, NamedTuple
 
 from atmosbox import scenarios
 from atmosbox.errors import ConfigError, FileError, shown
 from atmosbox.sheet import marks, sums
 
-__all__ = ["SECTIONS", "Change", "Prediction", "Question", "Row", "SheetText", "Sketch", "read", "text_of"]
+__all__ = ["SECTIONS", "Change", "read", "text_of"]
 
 SUFFIX = ".sheet.toml"
 SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}
 """The headings of the groups of questions, by their names in the file."""
 
 
-def _checked(text: str) -> str:
+Reader = Callable[[Any, str], Any]
+"""Returns an entry of the file, checked, from what was written and the place where it stands."""
+
+
+class Change(NamedTuple):
+    """The change of a further run, which differs from the first in one respect, by one or several settings."""
+
+    title: str
+    set: dict[str, Any]
+
+
+def _text(found: Any, place: str) -> str:
     """Return a text as one line; refuse it if its sums or marks are not allowed."""
-    text = " ".join(text.split())
-    sums.check(text)
-    marks.check(re.sub(r"\{\{.*?\}\}", "0", text))
+    if not isinstance(found, str):
+        raise ConfigError(f"{place} is no text: put it in quotes")
+    text = " ".join(found.split())
+    try:
+        sums.check(text)
+        marks.check(re.sub(r"\{\{.*?\}\}", "0", text))
+    except ConfigError as error:
+        raise ConfigError(f"{place}: {error}") from error
     return text
 
 
-Text = Annotated[str, AfterValidator(_checked)]
-Needed = Annotated[Text, Field(pattern=r"\S")]
-Lines = Annotated[StrictInt, Field(ge=0, le=12)]
+def _needed(found: Any, place: str) -> str:
+    text = _text(found, place)
+    if not text:
+        raise ConfigError(f"{place} is empty: write a text")
+    return text
 
 
-class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+def _such(allowed: Callable[[Any], bool], problem: str) -> Reader:
+    """Return what reads a value that must be allowed."""
+
+    def read(found: Any, place: str) -> Any:
+        if not allowed(found):
+            raise ConfigError(f"{place} {problem}")
+        return found
+
+    return read
 
 
-class Sketch(_Entry):
-    """Empty axes into which students draw a guess; ``x`` and ``y`` are their labels, with units."""
-
-    x: Needed
-    y: Needed
+_NUMBER = _such(lambda found: type(found) is int and 0 <= found <= 12, "is no whole number from 0 to 12: correct it")
+_SWITCH = _such(lambda found: isinstance(found, bool), "is neither true nor false: write one of them")
+_SETTINGS = _such(lambda found: isinstance(found, dict) and bool(found), "names no setting: write {molecules = 200}")
 
 
-class Question(_Entry):
-    """A question with empty lines below it, or with its answer; ``lab`` tells whether running pages can answer it."""
+def _list(entry: Reader, most: int | None = None) -> Reader:
+    """Return what reads a list of entries, at most so many."""
 
-    ask: Needed
-    answer: Text = ""
-    lines: Lines | None = None
-    lab: bool = True
+    def read(found: Any, place: str) -> list[Any]:
+        if not isinstance(found, list):
+            name = place.partition(" ")[0]
+            raise ConfigError(f"{place} is no list: write [[{name}]] with two brackets, or a list of texts for choices")
+        if most is not None and len(found) > most:
+            raise ConfigError(f"{place} are too many: keep {most} of them")
+        return [entry(each, f"{place} {number}") for number, each in enumerate(found, 1)]
+
+    return read
 
 
-class Prediction(Question):
-    """A prediction that is written down before the run: answers to tick, one of them right; a sketch; or free lines."""
+def _table(**entries: tuple[Reader, Any]) -> Reader:
+    """Return what reads a table of entries, each with its reader and its default, which is ... if it must be given."""
 
-    choices: tuple[Needed, ...] = ()
-    right: int | None = None
-    sketch: Sketch | None = None
+    def read(found: Any, place: str) -> dict[str, Any]:
+        if not isinstance(found, dict):
+            raise ConfigError(f"{place} is no table: write [{place}] above its entries")
+        within = f"{place}, " if place else ""
+        for name in sorted(found.keys() - entries.keys()):
+            raise ConfigError(f"{within}{shown(name)} is unknown: correct the name, or remove it")
+        for name, (_, default) in entries.items():
+            if default is ... and name not in found:
+                raise ConfigError(f"{within}{name} is missing: add it")
+        return {
+            name: reader(found[name], f"{within}{name}") if name in found else default
+            for name, (reader, default) in entries.items()
+        }
 
-    @model_validator(mode="after")
-    def _check_right(self) -> Prediction:
-        if self.right is not None and not 1 <= self.right <= len(self.choices):
-            raise ValueError(
-                f"right = {self.right} is the number of none of its {len(self.choices)} choices: count from 1"
+    return read
+
+
+_QUESTION: dict[str, tuple[Reader, Any]] = {
+    "ask": (_needed, ...),
+    "answer": (_text, ""),
+    "lines": (_NUMBER, None),  # empty ones, below the question
+    "lab": (_SWITCH, True),  # whether running pages can answer it
+}
+_PREDICTION = _table(
+    **_QUESTION,
+    choices=(_list(_needed), ()),  # to tick; the one with the number `right` is right
+    right=(_NUMBER, None),
+    sketch=(_table(x=(_needed, ...), y=(_needed, ...)), None),  # empty axes for a guess: their labels, with units
+)
+
+
+def _prediction(found: Any, place: str) -> dict[str, Any]:
+    """Return a prediction that is written down before the run: answers to tick, a sketch, or free lines."""
+    read: dict[str, Any] = _PREDICTION(found, place)
+    right, choices = read["right"], read["choices"]
+    if right is not None and not 1 <= right <= len(choices):
+        raise ConfigError(f"{place}: right = {right} is the number of none of its {len(choices)} choices: count from 1")
+    return read
+
+
+_SHEET = _table(
+    goal=(_needed, ...),  # the subject of the sheet, in two sentences
+    predict=(_list(_prediction), ()),
+    change=(_list(_table(title=(_needed, ...), set=(_SETTINGS, ...)), 3), ()),  # of the runs after the first
+    row=(  # of the table; if there are none, it has all headlines of the scene
+        _list(
+            _table(
+                headline=(_needed, ...),
+                label=(_needed, ...),
+                unit=(_text, "1"),
+                theory=(_text, ""),  # the formula for students; empty if that needs a computer
+                runs=(_text, "ABCD"),  # the letters of the runs that report it
             )
-        return self
-
-
-class Change(_Entry):
-    """The change of a further run, which differs from the first in one respect, by one or several settings."""
-
-    title: Needed
-    set: Annotated[dict[str, Any], Field(min_length=1)]
-
-
-class Row(_Entry):
-    """A row of the table.
-
-    Attributes
-    ----------
-    headline
-        Name of a headline of the scene.
-    label, unit
-        Its name in the table and its unit, as the headline has them.
-    theory
-        The formula with which students compute the value of theory; empty if that needs a computer.
-    runs
-        The letters of the runs that report it.
-    """
-
-    headline: Needed
-    label: Needed
-    unit: str = "1"
-    theory: Text = ""
-    runs: str = "ABCD"
-
-
-class SheetText(_Entry):
-    """The whole text of the sheet of a scene.
-
-    Attributes
-    ----------
-    goal
-        The subject of the sheet, in two sentences.
-    predict
-        The predictions that students write down before the run.
-    change
-        The changes of the runs after the first.
-    row
-        The rows of the table; if there are none, the table has all headlines of the scene.
-    notice, try_, differ, further
-        The questions.
-    constants
-        The constants that the formulas need, printed above the table.
-    leaves_out
-        What the model leaves out; if it is empty, the scene's docstring tells it.
-    """
-
-    goal: Needed
-    predict: tuple[Prediction, ...] = ()
-    change: Annotated[tuple[Change, ...], Field(max_length=3)] = ()
-    row: tuple[Row, ...] = ()
-    notice: tuple[Question, ...] = ()
-    try_: tuple[Question, ...] = Field((), alias="try")
-    differ: tuple[Question, ...] = ()
-    further: tuple[Question, ...] = ()
-    constants: Text = ""
-    leaves_out: Text = ""
+        ),
+        (),
+    ),
+    **{name: (_list(_table(**_QUESTION)), ()) for name in SECTIONS},
+    constants=(_text, ""),  # that the formulas need, printed above the table
+    leaves_out=(_text, ""),  # what the model leaves out; if it is empty, the scene's docstring tells it
+)
 
 
 def text_of(module: ModuleType) -> Path | None:
@@ -163,7 +177,7 @@ def text_of(module: ModuleType) -> Path | None:
     return None if base is None else text_of(scenarios.load(base))
 
 
-def read(path: str | os.PathLike[str]) -> SheetText:
+def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read the text of a sheet.
 
     Parameters
@@ -173,8 +187,8 @@ def read(path: str | os.PathLike[str]) -> SheetText:
 
     Returns
     -------
-    SheetText
-        The text; its sums are not yet worked out.
+    dict
+        The entries of the file, and the defaults of those that it does not have; their sums are not yet worked out.
 
     Raises
     ------
@@ -190,30 +204,11 @@ def read(path: str | os.PathLike[str]) -> SheetText:
     atmosbox.errors.FileError: The words of the sheet cannot be read from no/such.sheet.toml: No such file or directory.
     """
     try:
-        return SheetText.model_validate(tomllib.loads(Path(path).read_text(encoding="utf-8")))
+        words: dict[str, Any] = _SHEET(tomllib.loads(Path(path).read_text(encoding="utf-8")), "")
+        return words
     except OSError as error:
         raise FileError(f"The words of the sheet cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
-    except ValidationError as error:
-        raise ConfigError(f"{path}: {_problem(error)}; see docs/sheet.md.") from error
-
-
-_PROBLEMS = {
-    "missing": "is missing: add it",
-    "extra_forbidden": "is unknown: correct the name, or remove it",
-    "string_pattern_mismatch": "is empty: write a text",
-    "string_type": "is no text: put it in quotes",
-    "tuple_type": "is no list: write [[{0}]] with two brackets, or a list of texts for choices",
-    "too_long": "are too many: keep three of them",
-}
-
-
-def _problem(error: ValidationError) -> str:
-    """Return a message on the first wrong entry, with its name and number: 'notice 2, ask is missing: add it'."""
-    first = error.errors()[0]
-    place = ", ".join(str(part) for part in first["loc"])
-    place = re.sub(r", (\d+)", lambda n: f" {int(n[1]) + 1}", place)
-    own = first.get("ctx", {}).get("error")
-    said = f": {own}" if own else " " + _PROBLEMS.get(first["type"], first["msg"]).format(*first["loc"])
-    return f"{shown(place, 100)}{said}"
+    except ConfigError as error:
+        raise ConfigError(f"{path}: {error}; see docs/sheet.md.") from error

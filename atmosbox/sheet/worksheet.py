@@ -19,7 +19,7 @@ from atmosbox.sheet.graph_row import graph_rows, until
 from atmosbox.sheet.number_text import bare, fixed, measured, spelled, theoretical
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, filled
-from atmosbox.sheet.text import SECTIONS, Change, SheetText, read, text_of
+from atmosbox.sheet.text import SECTIONS, Change, read, text_of
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
@@ -119,9 +119,9 @@ def worksheet(
     path = text_of(first.module) or WORDS
     words = read(path)
     alone = _Filling(path, trials(first, ()))
-    changes = [Change(**alone.all(each.model_dump(), f"change {n}")) for n, each in enumerate(words.change, 1)]
+    changes = [Change(**alone.all(each, f"change {n}")) for n, each in enumerate(words["change"], 1)]
     runs = trials(first, changes)
-    due = len(runs) if answers else 0 if words.row or lab else 1
+    due = len(runs) if answers else 0 if words["row"] or lab else 1
     if due and path != WORDS:
         _Filling(path, runs).sheet(words)  # a mistake is refused before time is spent on a run
     runs = (*execute(runs[:due], progress), *runs[due:])
@@ -150,10 +150,9 @@ class _Filling:
         # questions and all other texts except answers may not use results of the runs
         self.before = {run.letter: Trial(run.letter, run.title, run.prepared) for run in runs} | scene
 
-    def sheet(self, words: SheetText) -> dict[str, Any]:
+    def sheet(self, words: dict[str, Any]) -> dict[str, Any]:
         """Return the whole text of a sheet, with its sums worked out."""
-        content = words.model_dump(by_alias=True, exclude={"change"})
-        return {key: self.all(value, key) for key, value in content.items()}
+        return {key: self.all(value, key) for key, value in words.items() if key != "change"}
 
     def all(self, value: Any, place: str) -> Any:
         """Return an entry with all sums in it worked out; an error message names the place of the entry."""
@@ -175,7 +174,7 @@ class _Filling:
         return value
 
 
-def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool, lab: bool) -> Worksheet:
+def _written(path: Path, words: dict[str, Any], runs: Sequence[Trial], answers: bool, lab: bool) -> Worksheet:
     """Return the sheet as Markdown, with what belongs to it."""
     first = runs[0].prepared
     differs = bool(first.settings.changed().keys() - {"seed"}) or bool(first.unusual_engine)
@@ -188,7 +187,7 @@ def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool,
     content |= {"lab": lab, "graphs": graph_rows(runs) if lab else []}
     if lab:
         content["row"] = []
-    elif not words.row:
+    elif not words["row"]:
         found = [each for each in runs[0].headlines.values() if each.resolved and not each.program]
         content["row"] = [
             {"headline": h.name, "label": h.label, "unit": h.display_unit, "theory": "", "runs": "ABCD"} for h in found

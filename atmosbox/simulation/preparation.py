@@ -13,11 +13,10 @@ from atmosbox import scenarios
 from atmosbox.engine import PackingError as EnginePackingError
 from atmosbox.engine import RefusedError
 from atmosbox.engine.core.marching import MarchingParcel
-from atmosbox.errors import EngineError, PackingError, SettingError
+from atmosbox.errors import EngineError, Option, PackingError, SettingError
 from atmosbox.scene.engines import EXACT, EngineChoice, choose
 from atmosbox.scene.instruments import Discs
-from atmosbox.scene.parameter import Parameter
-from atmosbox.scene.settings import SceneSettings
+from atmosbox.scene.settings import Parameter, SceneSettings
 from atmosbox.scene.setup import Setup
 from atmosbox.scene.spelling import field_name
 from atmosbox.simulation import accuracy as accuracies
@@ -128,13 +127,14 @@ def prepare(
             raise SettingError("accuracy", accuracy, "picks the engine itself", f"leave it out, or the engine {engine}")
         picked = accuracies.choose(name, accuracy, checked.changed())
         given = {field_name(setting) for setting in settings}
-        checked = checked.model_copy(update={n: value for n, value in picked.sets.items() if n not in given})
+        sets = {name: value for name, value in picked.sets.items() if name not in given}
+        checked = module.Settings.from_user({**checked.as_dict(), **sets})
         engine = picked.way.engine
     chosen = usual_engine(module, checked) if engine is None else choose(engine)
     if chosen != EXACT and not _takes_engine(module):
         raise SettingError(
             "engine", str(chosen), f"is not for the scene {os.fspath(scene)}, whose build takes no engine",
-            f"give --engine {EXACT}, or let its build take one: build(settings, engine)",
+            Option("engine", EXACT.name), ", or let its build take one: build(settings, engine)"
         )  # fmt: skip
     expectation = None
     if accuracy is not None:
@@ -202,9 +202,8 @@ def build(prepared: Prepared) -> Setup:
         if isinstance(error, SettingError):
             raise
         if prepared.engine.name != EXACT.name:
-            raise SettingError(
-                "engine", str(prepared.engine), f"cannot do {prepared.scene} ({error})", f"give --engine {EXACT}"
-            ) from error
+            problem = f"cannot do {prepared.scene} ({error})"
+            raise SettingError("engine", str(prepared.engine), problem, Option("engine", EXACT.name)) from error
         where = scenarios.place(error)
         box = f"The box of {prepared.scene}" if where is None else f"{where}: the box"
         raise EngineError(f"{box} cannot be built: {error}.") from error
@@ -214,7 +213,7 @@ def build(prepared: Prepared) -> Setup:
             raise SettingError(
                 "molecules", setup.parcel.present.size,
                 f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
-                "leave out --save-molecules, or take fewer molecules",
+                "leave out ", Option("save_molecules", True), ", or take fewer molecules"
             )  # fmt: skip
     return setup
 

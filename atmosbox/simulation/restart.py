@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from atmosbox.engine import RefusedError
 from atmosbox.engine.core.kernel_cache import cache_folder, source_digest
 from atmosbox.engine.core.saved_state import SavedState
-from atmosbox.errors import FileError
+from atmosbox.errors import Command, FileError, Option
 from atmosbox.simulation.preparation import Prepared
 from atmosbox.version import __version__
 
@@ -158,7 +158,7 @@ def read_state(path: str | Path) -> Restart:
         why = "holds no state of its run, so that it cannot go on"
         if found.attrs.get("atmosbox_status") == "complete":
             why = "is finished"
-        raise FileError(f"{path} {why}: type atmosbox run --from with it to run it again.")
+        raise FileError(f"{path} {why}", from_file(path), " to run it again")
     try:
         size = int.from_bytes(content[:8].tobytes(), "little")
         head = json.loads(content[8 : 8 + size].tobytes())
@@ -166,7 +166,12 @@ def read_state(path: str | Path) -> Restart:
         attributes = {**found.attrs, "history": str(found.attrs["history"])}
         return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], attributes)
     except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise FileError(f"The state in {path} is damaged: type atmosbox run --from with it to run it again.") from error
+        raise FileError(f"The state in {path} is damaged", from_file(path), " to run it again") from error
+
+
+def from_file(path: str | Path) -> Command:
+    """Return the command that makes the run of a file from its beginning."""
+    return Command("run", (Option("from", str(path)),))
 
 
 def check_alike(restart: Restart, prepared: Prepared) -> None:
@@ -183,8 +188,9 @@ def check_alike(restart: Restart, prepared: Prepared) -> None:
         if before != json.loads(json.dumps(value)):
             said = f" ({before}, now {value})" if isinstance(before, str | int) else ""
             raise FileError(
-                f"{restart.source} cannot go on bit for bit, because the {name}{said} changed since: "
-                f"type atmosbox run --from {restart.source} to begin again."
+                f"{restart.source} cannot go on bit for bit, because the {name}{said} changed since",
+                from_file(restart.source),
+                " to begin again",
             )
 
 
@@ -209,8 +215,9 @@ def put_back(restart: Restart, recording: Recording) -> float:
         return float(tree["seconds"])
     except (RefusedError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise FileError(
-            f"The state in {restart.source} is damaged or that of another run ({error}): "
-            "type atmosbox run --from with it to begin again."
+            f"The state in {restart.source} is damaged or that of another run ({error})",
+            from_file(restart.source),
+            " to begin again",
         ) from error
 
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import StalledError
-from atmosbox.errors import EngineError, FileError, SoundingError
+from atmosbox.errors import Command, EngineError, FileError, Option, SoundingError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
@@ -18,7 +18,7 @@ from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
-from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, put_back, read_state, with_state
+from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, from_file, put_back, read_state, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ def _execute(
         setup.parcel.advance(0.0)
     for sentence in setup.doubts:
         if strict:
-            raise SoundingError(f"{sentence[:-1]}: correct it, or leave --strict out.")
+            raise SoundingError(sentence[:-1], "correct it, or leave ", Option("strict"), " out")
         if restart is None:
             warnings.warn(sentence, stacklevel=3)
     recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
@@ -156,7 +156,7 @@ def _execute(
     if restart is not None:
         spent = put_back(restart, recording)
         if recording.frames >= setup.frames:
-            raise FileError(f"{restart.source} is finished: type atmosbox run --from with it to run it again.")
+            raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
     warned = False
 
     def watch(now: float) -> None:
@@ -306,8 +306,8 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
     own = named.endswith(".py") or os.sep in named
     if scene is None and own:
         raise FileError(
-            f"{restart.source} is for the scene in the file {named}, which must be typed: "
-            f"atmosbox run {named} --resume {restart.source}."
+            f"{restart.source} is for the scene in the file {named}, which must be typed",
+            Command("run", (named, Option("resume", str(restart.source)))),
         )
     if scene is not None and os.fspath(scene).replace("_", "-") != named.replace("_", "-"):
         raise FileError(f"{restart.source} is for the scene {named}, not for {scene}: leave one of them out.")

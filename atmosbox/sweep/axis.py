@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from atmosbox.errors import SettingError, UnitError, UnknownSettingError
+from atmosbox.errors import Option, SettingError, UnitError, UnknownSettingError
 from atmosbox.scene.conversion import from_si, to_si
-from atmosbox.scene.parameter import Parameter, Value
-from atmosbox.scene.settings import SceneSettings
+from atmosbox.scene.settings import Parameter, SceneSettings, Value, by_name
 from atmosbox.scene.spelling import field_name
 
 __all__ = ["LONGEST", "Axis", "parse_vary"]
@@ -96,32 +95,33 @@ def parse_vary(items: Iterable[str], settings: type[SceneSettings]) -> tuple[Axi
         name = field_name(name)
         if not (name and equals and text):
             lacks = "name" if equals and not name else "values" if equals else '"=" between name and values'
-            raise SettingError(f"--vary {item}", None, f"has no {lacks}", _fix(parameters.get(name)))
+            raise SettingError("vary", item, f"has no {lacks}", *_fix(parameters.get(name)))
         if name == "seed":
-            raise SettingError("--vary seed", None, "is what the members vary already", "give --members 8 instead")
+            raise SettingError("seed", text, "is what the members vary already", Option("members", 8), " instead")
         if name in (axis.name for axis in axes):
-            raise SettingError(f"--vary {name}", None, "is given twice", f"give --vary {name} once")
+            raise SettingError(name, text, "is varied twice", Option("vary", {name: None}), " once")
         try:
-            if name not in parameters:
-                settings.from_user({name: text})  # raises the error that names the most similar setting
+            by_name({name: text}, parameters)  # raises the error that names the most similar setting
             axes.append(Axis(parameters[name], _values(text, parameters[name])))
         except UnknownSettingError as error:
-            error.fix = error.fix.replace("--set ", "--vary ")
+            error.instead_of_settings(lambda part: Option("vary", {part.name: str(part.value)}))
             raise
         except SettingError as error:
-            error.fix = _fix(parameters[name])
+            error.remedy = _fix(parameters[name])
             raise
     return tuple(axes)
 
 
-def _fix(parameter: Parameter | None) -> str:
-    """Return what to type instead."""
+def _fix(parameter: Parameter | None) -> tuple[Option | str, ...]:
+    """Return what to give instead."""
     if parameter is None:
-        return "give --vary name=a:b:n, such as --vary temperature=0degC:40degC:5"
+        example = Option("vary", {"temperature": "0degC:40degC:5"})
+        return Option("vary", {"name": "a:b:n"}), ", such as ", example
     if parameter.kind in ("int", "float"):
-        return f"give --vary {parameter.name}=a:b:n or x,y,z, such as {parameter.typed(parameter.default)}"
+        example = Option("vary", {parameter.name: "a:b:n"})
+        return example, f" or x,y,z, such as {parameter.typed(parameter.default)}"
     allowed = ("on", "off") if parameter.kind == "bool" else parameter.choices or (str(parameter.default),)
-    return f"give --vary {parameter.name}={','.join(allowed)}"
+    return (Option("vary", {parameter.name: ",".join(allowed)}),)
 
 
 def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
@@ -131,9 +131,9 @@ def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
         return _row(text, parameter)
     values = [parameter.parse(part.strip()) for part in text.split(",")]
     if len(set(values)) < len(values):
-        raise SettingError(parameter.name, text, "names a value twice", "")
+        raise SettingError(parameter.name, text, "names a value twice")
     if len(values) > LONGEST:
-        raise SettingError(parameter.name, text, f"has {len(values)} values, more than {LONGEST}", "")
+        raise SettingError(parameter.name, text, f"has {len(values)} values, more than {LONGEST}")
     return tuple(sorted(values, key=float) if numeric else values)
 
 
@@ -142,23 +142,23 @@ def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
     parts = text.split(":")
     count = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
     if count is None:
-        raise UnitError(parameter.name, text, "is neither a:b:n, a:b:nlog nor x,y,z", "")
+        raise UnitError(parameter.name, text, "is neither a:b:n, a:b:nlog nor x,y,z")
     low, high = sorted((parameter.parse(part.strip()) for part in parts[:2]), key=float)
     n = int(count[1])
     if not 2 <= n <= LONGEST:
-        raise SettingError(parameter.name, text, f"asks for {n} values, and from 2 to {LONGEST} are possible", "")
+        raise SettingError(parameter.name, text, f"asks for {n} values, and from 2 to {LONGEST} are possible")
     if low == high:
-        raise SettingError(parameter.name, text, "begins where it ends", "")
+        raise SettingError(parameter.name, text, "begins where it ends")
     ends = float(low), float(high)
     if count[2] == "log":
         start, end = (to_si(limit, parameter.unit) for limit in ends)
         if start <= 0.0:
-            raise SettingError(parameter.name, text, "begins at or below zero, where no ratios are even", "")
+            raise SettingError(parameter.name, text, "begins at or below zero, where no ratios are even")
         inner = [from_si(value, parameter.unit) for value in np.geomspace(start, end, n)[1:-1].tolist()]
     else:
         inner = np.linspace(*ends, n)[1:-1].tolist()
     whole = parameter.kind == "int"
     values = (low, *(round(value) if whole else float(f"{value:.12g}") for value in inner), high)
     if len(set(values)) < n:
-        raise SettingError(parameter.name, text, f"has only {len(set(values))} different values, not {n}", "")
+        raise SettingError(parameter.name, text, f"has only {len(set(values))} different values, not {n}")
     return values

@@ -12,11 +12,13 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from atmosbox.errors import FileError, SettingError, shown
+from atmosbox.errors import FileError, Option, SettingError, shown
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
+from atmosbox.file.output_lock import ANOTHER_NAME
 from atmosbox.file.output_path import part_path, write_failure, write_whole
 from atmosbox.file.provenance import history_line
+from atmosbox.scene.settings import Parameter
 from atmosbox.simulation.recording import uninterrupted
 from atmosbox.sweep import workers
 from atmosbox.sweep.plan import Plan
@@ -26,6 +28,7 @@ __all__ = ["SweepInterrupted", "Swept", "folder_of", "is_taken", "sweep"]
 
 REQUEST = "sweep.json"
 """The file in the folder of a sweep that tells which sweep it is."""
+_JOBS = Parameter("jobs", "1", workers.cores(), 1, 4096, kind="int", given_as=Option)
 
 Progress = Callable[[float, str], None]
 
@@ -69,7 +72,7 @@ def sweep(
     plan: Plan,
     out: str | os.PathLike[str] | None = None,
     *,
-    jobs: int | None = None,
+    jobs: int | str | None = None,
     scheduler: str | None = None,
     force: bool = False,
     progress: Progress | None = None,
@@ -123,10 +126,9 @@ def sweep(
     >>> dict(swept.dataset.sizes), swept.failures, swept.ledger < LEDGER_LIMIT
     ({'molecules': 2, 'member': 1}, (), True)
     """
-    if jobs is not None and jobs < 1:
-        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {workers.cores()}")
+    processes = workers.cores() if jobs is None else int(_JOBS.parse(jobs))
     if jobs is not None and scheduler is not None:
-        raise SettingError("jobs", jobs, "is for this machine, and --scheduler for another", "leave one of them out")
+        raise SettingError("jobs", jobs, "is for this machine, and a scheduler for another", "leave one of them out")
     tell, say = progress or (lambda share, word: None), note or (lambda text: None)
     with _folder(plan, out, force) as (folder, checkpoint):
         tasks = plan.tasks(folder)
@@ -143,7 +145,7 @@ def sweep(
         def watch(share: float, word: str) -> None:
             tell(min((ended + share) / plan.runs, 1.0), word)
 
-        number = min(jobs or workers.cores(), len(waiting))
+        number = min(processes, len(waiting))
         runs = (
             workers.on_cluster(waiting, scheduler, watch)
             if scheduler is not None
@@ -233,11 +235,14 @@ def _take(folder: Path, request: Mapping[str, Any], force: bool) -> None:
     if known == wanted:
         return
     if known is None and (os.path.lexists(folder) and not (folder.is_dir() and not any(folder.iterdir()))):
-        raise FileError(f"{folder} holds other things than a sweep: move it, or name another file with --out.")
+        raise FileError(f"{folder} holds other things than a sweep", "move it, or ", *ANOTHER_NAME)
     if known is not None and not force:
         raise FileError(
-            f"{folder} has the runs of another sweep, {_difference(known, wanted)}: name another file with --out, "
-            "or add --force to replace them."
+            f"{folder} has the runs of another sweep, {_difference(known, wanted)}",
+            *ANOTHER_NAME,
+            ", or add ",
+            Option("force", True),
+            " to replace them",
         )
     try:
         folder.mkdir(exist_ok=True)

@@ -11,7 +11,7 @@ from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError, FileError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.output_lock import BusyError
-from atmosbox.scene.parameter import Value
+from atmosbox.scene.settings import Value
 from atmosbox.simulation.preparation import Prepared, build, prepare
 from atmosbox.simulation.restart import check_alike, read_state
 from atmosbox.simulation.runner import execute

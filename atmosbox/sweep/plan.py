@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from atmosbox import scenarios
-from atmosbox.errors import SettingError
-from atmosbox.scene.parameter import Value
-from atmosbox.scene.spelling import field_name
+from atmosbox.errors import Option, Setting, SettingError
+from atmosbox.scene.settings import Parameter, Value, by_name
 from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.simulation.restart import described
 from atmosbox.sweep.axis import Axis, parse_vary
@@ -25,6 +24,7 @@ __all__ = ["MOST_RUNS", "Plan", "member_seed", "plan"]
 
 MOST_RUNS = 100_000
 """Greatest number of runs of one sweep."""
+_MEMBERS = Parameter("members", "1", 8, 1, 1_000_000, kind="int", given_as=Option)
 
 
 def member_seed(seed: int, point: int, member: int) -> int:
@@ -161,9 +161,9 @@ class Plan:
         types = {p.name: p for p in scenarios.load(self.scene).Settings.describe()}
         words = described(self.prepared[0])
         del words["settings"]
-        words |= {"scene": self.scene, "--engine": self.engines, "--accuracy": self.accuracy, "--seed": self.seed}
-        words |= {f"--set {name}": types[name].typed(value) for name, value in self.settings.items()}
-        words["--vary"] = [f"{axis.name}={','.join(map(axis.parameter.typed, axis.values))}" for axis in self.axes]
+        words |= {"scene": self.scene, "engine": self.engines, "accuracy": self.accuracy, "seed": self.seed}
+        words |= {f"setting {name}": types[name].typed(value) for name, value in self.settings.items()}
+        words["vary"] = [f"{axis.name}={','.join(map(axis.parameter.typed, axis.values))}" for axis in self.axes]
         values = [*self.settings.values(), *(value for axis in self.axes for value in axis.values)]
         files = sorted(value for value in values if isinstance(value, str) and os.path.isfile(value))
         return words | {f"content of {name}": hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in files}
@@ -174,8 +174,8 @@ def plan(
     vary: Iterable[str],
     *,
     settings: Mapping[str, Any] | None = None,
-    members: int = 1,
-    seed: int | None = None,
+    members: int | str = 1,
+    seed: int | str | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
 ) -> Plan:
@@ -210,27 +210,25 @@ def plan(
     --------
     >>> plan("temperature", ["temperature=0degC:40degC:5"], settings={"temperature": 3})
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: --set temperature is varied, too: leave out --set temperature or --vary temperature.
+    atmosbox.errors.SettingError: temperature = 3.0 is varied, too: leave out temperature or vary={"temperature": ...}.
     """
     text = os.fspath(scene)
     text = text.replace("_", "-") if text.replace("_", "-") in scenarios.names() else text
     declared = scenarios.load(text).Settings
     types = {p.name: p for p in declared.describe()}
-    given = {field_name(name): value for name, value in (settings or {}).items()}
-    for name, value in given.items():
-        if name not in types:
-            declared.from_user({name: value})  # raises the error that names the most similar setting
+    given = by_name(settings or {}, types)
     axes = parse_vary(vary, declared)
     if not axes:
-        raise SettingError("--vary", None, "is not given", "give --vary name=a:b:n, such as --vary molecules=100,200")
+        example = Option("vary", {"molecules": "100,200"})
+        raise SettingError("vary", None, "is not given", Option("vary", {"name": "a:b:n"}), ", such as ", example)
     fixed = {name: types[name].parse(value) for name, value in given.items()}
     own = fixed.pop("seed", types["seed"].default)
     chosen = int(types["seed"].parse(own if seed is None else seed))
-    if members < 1:
-        raise SettingError("members", members, "is fewer than one run at each point", "give --members 8")
+    several = int(_MEMBERS.parse(members))
     for name in fixed.keys() & {axis.name for axis in axes}:
-        raise SettingError(f"--set {name}", None, "is varied, too", f"leave out --set {name} or --vary {name}")
-    made = Plan(text, axes, fixed, members, chosen, engine, accuracy)
+        fix = ("leave out ", Setting(name), " or ", Option("vary", {name: None}))
+        raise SettingError(name, fixed[name], "is varied, too", *fix)
+    made = Plan(text, axes, fixed, several, chosen, engine, accuracy)
     if made.runs > MOST_RUNS:
         raise SettingError("sweep", None, f"has {made.runs} runs, more than {MOST_RUNS}", "vary fewer values")
     for point in range(1, made.points + 1):

@@ -14,7 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import connection
 from typing import TYPE_CHECKING
 
-from atmosbox.errors import AtmosboxError, EngineError, SettingError
+from atmosbox.errors import AtmosboxError, EngineError, Option, SettingError
 from atmosbox.sweep import member
 from atmosbox.sweep.member import Done, Task
 from atmosbox.version import __version__
@@ -78,7 +78,7 @@ def processes(tasks: Sequence[Task], jobs: int, watch: Watch) -> Generator[Done]
             suspects = 0
         except BrokenProcessPool:
             if suspects:
-                yield Done(waiting.pop(0), "Its process died twice: memory may be short, give fewer --jobs.")
+                yield Done(waiting.pop(0), "Its process died twice: memory may be short, give fewer jobs.")
             suspects = suspects - 1 if suspects else workers
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
@@ -93,8 +93,9 @@ def _check_begun(pool: futures.Executor) -> None:
         pool.submit(cores).result()
     except BrokenProcessPool:
         raise EngineError(
-            "The processes of the sweep cannot begin: in a script of your own, put the call below if __name__ == "
-            '"__main__", or give --jobs 1.'
+            "The processes of the sweep cannot begin",
+            'in a script of your own, put the call below if __name__ == "__main__", or give ',
+            Option("jobs", 1),
         ) from None
 
 
@@ -168,8 +169,10 @@ def _connected(address: str) -> Client:
         return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
         why = " ".join(str(error).split()) or type(error).__name__
-        fix = "start one with dask scheduler, and give --scheduler with the address that it names"
-        raise SettingError("scheduler", address, f"does not answer ({why})", fix) from error
+        problem = f"does not answer ({why}): start one with dask scheduler"
+        raise SettingError(
+            "scheduler", address, problem, Option("scheduler"), " with the address that it names"
+        ) from error
 
 
 def _check_workers(client: Client, address: str) -> None:

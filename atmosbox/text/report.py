@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from atmosbox.scene.conversion import from_si, slashed
 from atmosbox.scene.headline import CHANCE
-from atmosbox.scene.quantity import phrase
 from atmosbox.text.table import digits, measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline
-    from atmosbox.scene.parameter import Parameter
+    from atmosbox.scene.settings import Parameter
     from atmosbox.simulation.runner import Card, Outcome
 
 
@@ -262,19 +261,12 @@ def parameter_lines(parameters: Sequence[Parameter], width: int) -> list[str]:
     """Return the table of the settings of a scene."""
     header = ["setting", "default", "unit", "allowed", "what it is"]
     rows = [
-        [p.name, _value(p, p.default).removesuffix(f" {p.unit}"), p.unit or "-", p.allowed, p.help] for p in parameters
+        [p.name, p.said(p.default).removesuffix(f" {p.unit}"), p.unit or "-", p.allowed, p.help] for p in parameters
     ]
     return table(header, rows, width)
 
 
-def _value(parameter: Parameter, value: bool | int | float | str) -> str:
-    """Return the value of a setting with its unit."""
-    if isinstance(value, bool | str):
-        return parameter.typed(value)
-    return phrase(value, parameter.unit)
-
-
 def setting_lines(settings: Mapping[str, Any], parameters: Sequence[Parameter], width: int) -> list[str]:
     """Return the values with which a scene runs; values that differ from their defaults are marked."""
-    rows = [[p.name, _value(p, settings[p.name]), "" if settings[p.name] == p.default else "set"] for p in parameters]
+    rows = [[p.name, p.said(settings[p.name]), "" if settings[p.name] == p.default else "set"] for p in parameters]
     return table(["setting", "value", ""], rows, width)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from atmosbox import scenarios
 from atmosbox.engine.core.kernel_cache import source_digest
-from atmosbox.errors import AtmosboxError, FileError, SettingError
+from atmosbox.errors import AtmosboxError, FileError, Option, SettingError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.file.provenance import global_attributes, parameters
@@ -100,7 +100,7 @@ def measure(
     if ways is None and not series:
         raise SettingError("scene", scene, "declares nothing to compare", "give its module a ladder of Series")
     if not (math.isfinite(budget) and 1.0 <= budget <= 1e6):
-        raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", "give --budget 40s")
+        raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", Option("budget", "40s"))
     module.Settings.from_user(settings or {})
     ways = tuple(ways) if ways is not None else ways_of(series, settings or {})
     first = _first_alike(ways, module.Settings)
@@ -166,7 +166,8 @@ def measure(
                 status, left_out = "interrupted", []
         if not any(results):
             why = next((reason for reason in left_out if reason), "no run fits into it")
-            raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")
+            problem = f"leaves nothing measured ({why})"
+            raise SettingError("budget", f"{budget:g} s", problem, "give a longer ", Option("budget"))
         found = dataset(status, left_out)
         if checkpoint is not None:
             with uninterrupted():
@@ -185,8 +186,12 @@ def _saved(part: Path, asked: Mapping[str, Any]) -> xr.Dataset:
     different = [name for name in {**asked, **before} if asked.get(name) != before.get(name)]
     if different:
         raise FileError(
-            f"{part} has the runs of another tradeoff ({', '.join(different)}): name another file with "
-            "--out, or add --force to replace them."
+            f"{part} has the runs of another tradeoff ({', '.join(different)})",
+            "name another file with ",
+            Option("out"),
+            ", or add ",
+            Option("force", True),
+            " to replace them",
         )
     return saved
 

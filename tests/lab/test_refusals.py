@@ -14,7 +14,7 @@ from atmosbox.simulation.preparation import prepare
         ("convection", {"molecules": 500}, None, "Flow"),
         ("attraction", {"start": "slab", "density": 1.0}, None, "Slab"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
-        ("atmosphere", {"molecules": 1000, "gravity": 100, "height": 1000}, "exact", "start=equilibrium"),
+        ("atmosphere", {"molecules": 1000, "gravity": 100, "height": 1000}, "exact", "start=.equilibrium"),
     ],
 )
 def test_a_box_without_a_module_names_the_reason_and_the_way_out(tmp_path, scene, settings, engine, reason):

@@ -127,7 +127,7 @@ def test_a_run_that_was_stopped_before_theory_is_shown_without(run):
 def test_a_run_that_cannot_be_shown_is_refused_with_what_to_type(run, tmp_path):
     whole = run()
     for spoilt, said in [
-        (whole.drop_vars("molecule_position"), r"no molecules: type atmosbox run temperature --save-molecules\."),
+        (whole.drop_vars("molecule_position"), "no molecules: type atmosbox.run"),
         (whole.drop_vars("box_side"), "earlier atmosbox and lacks box_side"),
         (whole.isel(elapsed_time=slice(0)), "holds no frame"),
         (whole.expand_dims(rung=2), "comparison of engines"),
@@ -167,6 +167,4 @@ def test_water_that_is_all_in_the_liquid_has_no_speed_and_nothing_warns(run):
 
 def test_the_page_names_the_run_that_would_show_collisions(run):
     (page,) = pages([run(5, 50, settings={"duration": 0.05})])
-    assert any(
-        "A run with --set duration=" in note and note.endswith("ns shows them.") for note in page.record["notes"]
-    )
+    assert any("A run with duration=" in note and note.endswith("ns shows them.") for note in page.record["notes"])

@@ -155,18 +155,16 @@ def test_those_that_leave_have_the_binding_energy_and_the_flux_of_a_vapour():
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        ({"pressure": 42.0}, "makes water boil at 42 hPa.*temperature=29degC"),
-        ({"pressure": 1.0, "temperature": 95.0}, "boil.*temperature=-23degC"),
-        ({"humidity": 600.0, "temperature": 60.0}, "hardly any air is left.*humidity=4[0-9][0-9]percent"),
-        ({"pressure": 20_000.0, "diameter": 1.0}, r"too wide for 20000 hPa.*diameter=0\.[0-9]+nm"),
+        ({"pressure": 42.0}, "makes water boil at 42 hPa.*temperature=.29degC"),
+        ({"pressure": 1.0, "temperature": 95.0}, "boil.*temperature=.-23degC"),
+        ({"humidity": 600.0, "temperature": 60.0}, "hardly any air is left.*humidity=.4[0-9][0-9]percent"),
+        ({"pressure": 20_000.0, "diameter": 1.0}, r"too wide for 20000 hPa.*diameter=.0\.[0-9]+nm"),
     ],
 )
 def test_what_cannot_be_is_refused_with_what_to_type_instead(settings, words):
     with pytest.raises(SettingError, match=words) as refusal:
         runner.prepare("evaporation", settings)
-    fix = str(refusal.value).rpartition("--set ")[2].removesuffix(".").split(" ")[0]
-    name, _, value = fix.partition("=")
-    runner.prepare("evaporation", {**settings, name: value})
+    runner.prepare("evaporation", {**settings, **dict([refusal.value.remedy[0]])})
 
 
 def test_a_run_too_short_to_come_to_rest_states_no_answer():

@@ -11,8 +11,8 @@ import xarray as xr
 from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError
 from atmosbox.file.provenance import parameters
-from atmosbox.scene.parameter import Parameter
-from atmosbox.scene.quantity import phrase
+from atmosbox.scene.conversion import phrase
+from atmosbox.scene.settings import Parameter
 
 __all__ = ["Change", "Naming", "naming"]
 

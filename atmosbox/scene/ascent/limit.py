@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import Setting, SettingError
 
 __all__ = ["refuse_descent", "refuse_supersaturation"]
 
@@ -28,14 +28,14 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
     Traceback (most recent call last):
         ...
     atmosbox.errors.SettingError: top_pressure = 990 hPa is not below the pressure at the ground, 1000 hPa:
-    give --set top_pressure=300hPa.
+    give top_pressure="300hPa".
     """
     if top_pressure > 0.98 * ground_pressure:
         raise SettingError(
             "top_pressure",
             f"{top_pressure:g} hPa",
             f"is not below {ground}, {ground_pressure:g} hPa",
-            f"give --set top_pressure={0.3 * ground_pressure:.0f}hPa",
+            Setting("top_pressure", f"{0.3 * ground_pressure:.0f}hPa"),
         )
 
 
@@ -53,12 +53,13 @@ def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     Traceback (most recent call last):
     ...
     atmosbox.errors.SettingError: dewpoint = 26 degC is above the temperature, 25 degC:
-    such air is in its cloud already: give --set dewpoint=25degC for saturated air.
+    such air is in its cloud already: give dewpoint="25degC" for saturated air.
     """
     if dewpoint > temperature:
         raise SettingError(
             "dewpoint",
             f"{dewpoint:g} degC",
             f"is above the temperature, {temperature:g} degC: such air is in its cloud already",
-            f"give --set dewpoint={temperature:g}degC for saturated air",
+            Setting("dewpoint", f"{temperature:g}degC"),
+            " for saturated air",
         )

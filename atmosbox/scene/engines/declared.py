@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from atmosbox.errors import SettingError
-from atmosbox.scene.parameter import Parameter, Value
+from atmosbox.errors import Option, SettingError
+from atmosbox.scene.settings import Parameter, Value
 
 if TYPE_CHECKING:
     from atmosbox.engine import Liquid, Parcel
@@ -90,7 +90,8 @@ def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
     from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
 
     if isinstance(liquid, Drops):
-        raise SettingError("engine", "dsmc", "has no drops with a size of their own", "give --engine exact, or a mist")
+        problem = "has no drops with a size of their own"
+        raise SettingError("engine", "dsmc", problem, Option("engine", "exact"), ", or a mist")
     return MoistDsmcParcel
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import Option, SettingError, either, on_command_line
 from atmosbox.scene.engines.declared import ENGINES, Engine
-from atmosbox.scene.parameter import Value, by_name
+from atmosbox.scene.settings import Value, by_name
 from atmosbox.scene.spelling import assignments, nearest
 
 if TYPE_CHECKING:
@@ -90,12 +90,12 @@ class EngineChoice:
         kind: Callable[[], Callable[..., Parcel]] = self.engine.parcel
         if "liquid" in box:
             if self.engine.moist is None:
-                able = " or ".join(f"--engine {engine.name}" for engine in ENGINES.values() if engine.moist is not None)
-                raise SettingError("engine", str(self), "cannot simulate liquid water", f"give {able}")
+                able = either("engine", [engine.name for engine in ENGINES.values() if engine.moist is not None])
+                raise SettingError("engine", str(self), "cannot simulate liquid water", *able)
             kind = partial(self.engine.moist, box["liquid"])
         if "well" in box:
             if self.engine.attracting is None:
-                raise SettingError("engine", str(self), "cannot simulate attraction", "give --engine exact")
+                raise SettingError("engine", str(self), "cannot simulate attraction", Option("engine", "exact"))
             kind = self.engine.attracting
         if self.described:
             from atmosbox.scene.engines.described_parcel import DescribedParcel
@@ -134,17 +134,17 @@ def choose(text: str | EngineChoice) -> EngineChoice:
     >>> choose("exakt")
     Traceback (most recent call last):
         ...
-    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc: give --engine exact.
+    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc: give engine="exact".
     """
     if isinstance(text, EngineChoice):
         return text
     name, colon, rest = str(text).strip().partition(":")
     if name not in ENGINES:
         near = "stepped:applet" if name == "classic" else nearest(name, ENGINES) or next(iter(ENGINES))
-        raise SettingError("engine", name, f"is not one of {', '.join(ENGINES)}", f"give --engine {near}")
+        raise SettingError("engine", name, f"is not one of {', '.join(ENGINES)}", Option("engine", near))
     engine = ENGINES[name]
     if colon and not rest.strip():
-        raise SettingError("engine", text, "ends in a colon without options", f"give --engine {name}")
+        raise SettingError("engine", text, "ends in a colon without options", Option("engine", name))
     parameters = {parameter.name: parameter for parameter in engine.parameters}
     words = [word.strip() for word in rest.split(",")] if rest else []
     options = {option: value for word in words for option, value in engine.presets.get(word, {}).items()}
@@ -154,8 +154,8 @@ def choose(text: str | EngineChoice) -> EngineChoice:
         options |= {option: parameters[option].parse(value) for option, value in given.items()}
         return EngineChoice(engine, options)
     except SettingError as error:
-        setting, fix = (part.replace("--set ", f"--engine {name}:") for part in (error.setting, error.fix))
-        raise type(error)(setting, error.value, error.problem, fix) from None
+        error.instead_of_settings(lambda part: Option("engine", f"{name}:{on_command_line(part)[6:]}"))
+        raise
 
 
 def suited(molecules: int) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import Option, SettingError
 from atmosbox.scene.target import FIX, TARGETS, Target, parse
 from atmosbox.simulation.accuracy.measured import Measured, Table, load
 
@@ -119,7 +119,7 @@ def choose(
 
     if good and not target.best:
         if not any(worst.values()):
-            raise SettingError("accuracy", target.text, f"says nothing of {scene}, which has no temperature", FIX)
+            raise SettingError("accuracy", target.text, f"says nothing of {scene}, which has no temperature", *FIX)
         return picked(min(good, key=lambda way: way.cost), True)
     best = min(ways, key=lambda way: worst[id(way)])
     if target.text in TARGETS:
@@ -132,7 +132,7 @@ def choose(
         "accuracy", target.text,
         f"is more than any measured run of {scene} reaches: the best, {best.label}, comes to "
         f"{reached:.2g} {unit} at {cost(best.cost)}",
-        f"give --accuracy {enough:.6g}{unit}, or reference",
+        Option("accuracy", f"{enough:.6g}{unit}"), ", or reference"
     )  # fmt: skip
 
 
