@@ -37,7 +37,7 @@ def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
     --------
     >>> wind = ("elapsed_time", np.r_[np.zeros(15), np.arange(15.0)])
     >>> instants(xr.Dataset({"roll_speed": wind}))
-    {'start': (0, 2), 'wind begins': (22, 24), 'end': (28, 30)}
+    {'start': (0, 2), 'wind begins': (23, 25), 'end': (28, 30)}
     """
     frames = dataset.sizes["elapsed_time"]
     part = max(1, round(_SHARE * frames))
