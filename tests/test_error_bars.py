@@ -288,6 +288,8 @@ def test_every_headline_that_a_scene_names_is_seen_in_a_case(scene, seen):
 def test_the_errors_of_sixty_runs_of_a_scene_as_it_comes_are_their_scatter(scene):
     if scene == "attraction":
         pytest.skip("as it comes it ends in two counts, which are what they are")
+    if scene == "convection":
+        pytest.skip("the number of rolls is chance, and runs differ by more than one of them fluctuates")
     outcomes = runs(scene, 60)
     table = accuracy.load().get(scene)
     assert table is None or set(table.labels) - set(PROFILES) <= names_of(outcomes)

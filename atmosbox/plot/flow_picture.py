@@ -31,17 +31,17 @@ _TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the
 def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
     """Return the first and the last frame of three pictures, at the start, in between and at the end, by their titles.
 
-    If there is wind to the end, the picture in between is where it has half of its greatest speed for the first time.
+    If there are rolls to the end, the one in between is where they first have half of their greatest speed.
 
     Examples
     --------
     >>> wind = ("elapsed_time", np.r_[np.zeros(15), np.arange(15.0)])
-    >>> instants(xr.Dataset({"wind_speed": wind}))
-    {'start': (0, 2), 'wind begins': (22, 24), 'end': (28, 30)}
+    >>> instants(xr.Dataset({"roll_speed": wind}))
+    {'start': (0, 2), 'wind begins': (23, 25), 'end': (28, 30)}
     """
     frames = dataset.sizes["elapsed_time"]
     part = max(1, round(_SHARE * frames))
-    speed = dataset["wind_speed"].values
+    speed = dataset["roll_speed"].values
     smooth = np.convolve(speed, np.ones(part) / part, mode="same")
     windy = bool((speed[-max(1, frames // 4) :] > 0.0).all())
     between = int(np.argmax(smooth > 0.5 * smooth.max())) if windy else frames // 2
