@@ -15,7 +15,7 @@ from atmosbox.film.graph import Graph, GraphPainter, chosen
 from atmosbox.film.running import Running
 from atmosbox.plot.box_picture import box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer
-from atmosbox.plot.layout import Pen, blank, put_panels, settle
+from atmosbox.plot.layout import TextMeasure, blank, put_panels, settle
 from atmosbox.plot.run_figure import explanation, panels_of
 from atmosbox.plot.theme import FAINT, Theme
 from atmosbox.plot.units import convert, spelled
@@ -83,7 +83,7 @@ class Sheet:
         beside = sum(panel.kind in ("profile", "skewt") for panel in panels)
         share = 0.0 if held is None else 1.0 if not panels else 0.34 if beside > 1 else 0.42
         self.figure = blank(look.wide, look)
-        pen = Pen(self.figure)
+        measure = TextMeasure(self.figure)
         wide, high = (72.0 * float(size) for size in self.figure.get_size_inches())  # pt
         left = look.text / 2 / wide
         self.stage = None if held is None else box_picture(self.figure.add_axes((0, 0, 1, 1)), dataset, held, look)
@@ -91,17 +91,17 @@ class Sheet:
         # The footer below all, which tells a viewer how far molecules fly between two pictures if that is far.
         words = [footer(dataset), *([] if self.stage is None else self.stage.legend())]
         words += self._jumps(held, np.arange(dataset.sizes["elapsed_time"]) if frames is None else frames)
-        small = pen.wrap(" · ".join(words) + explanation(dataset, panels), 0.98 * (wide - look.text), look.small)
+        small = measure.wrap(" · ".join(words) + explanation(dataset, panels), 0.98 * (wide - look.text), look.small)
         below = self.figure.text(
             left, 0.4 * look.text / high, small, fontsize=look.small, color=FAINT, va="bottom", linespacing=1.15
         )
-        bottom = (pen.height(below) + 0.8 * look.text) / high
+        bottom = (measure.height(below) + 0.8 * look.text) / high
 
         # The title, and below it the clock.
         title, size = str(dataset.attrs.get("title", "")), 1.25 * look.title
-        title = pen.wrap(title, (share or 1.0) * wide - look.text, size, "bold")
+        title = measure.wrap(title, (share or 1.0) * wide - look.text, size, "bold")
         over = self.figure.text(left, 1.0 - 0.5 * look.text / high, title, fontsize=size, weight="bold", va="top")
-        top = 1.0 - (pen.height(over) + 0.95 * look.text) / high
+        top = 1.0 - (measure.height(over) + 0.95 * look.text) / high
         self.clock = self.figure.text(left, top, self._time(0), fontsize=look.title, va="top")
         top -= (1.3 * look.title * len(self._time(0).splitlines()) + 0.4 * look.text) / high
         for text in (below, over, self.clock):
@@ -112,9 +112,9 @@ class Sheet:
         if panels and isinstance(engine, ConstrainedLayoutEngine):
             engine.set(rect=(share, bottom, 1.0 - share, (1.0 if share else top) - bottom))
             draw = GraphPainter(dataset, look, running).draw
-            plates = put_panels(self.figure, panels, look, dataset, draw)
-            settle(pen, plates, replace(look, grows=False))
-            self.graphs = [Graph(plate.axes, plate.panel, dataset, look, running) for plate in plates]
+            graphs = put_panels(self.figure, panels, look, dataset, draw)
+            settle(measure, graphs, replace(look, grows=False))
+            self.graphs = [Graph(graph.axes, graph.panel, dataset, look, running) for graph in graphs]
         self.figure.set_layout_engine("none")
         if self.stage is not None:  # place the box, and below it the colour bar
             left, width = 2 * left, share - 1.6 * look.text / wide

@@ -33,7 +33,7 @@ from atmosbox.scene.panels import Panel
 _FIXED = "\u00a0"  # a space that no line breaks at
 
 
-class Pen:
+class TextMeasure:
     r"""Measures text and breaks it into lines of any width; matplotlib itself wraps at the edge of the figure only.
 
     Parameters
@@ -46,7 +46,7 @@ class Pen:
     >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
     >>> drawing = Figure()
     >>> _ = FigureCanvasAgg(drawing)
-    >>> Pen(drawing).wrap("lapse rate = 9.8 ± 0.1 K km⁻¹ (of the parcel)", 90.0, 8.0).split("\n")
+    >>> TextMeasure(drawing).wrap("lapse rate = 9.8 ± 0.1 K km⁻¹ (of the parcel)", 90.0, 8.0).split("\n")
     ['lapse rate', '= 9.8 ± 0.1 K km⁻¹ (of the parcel)']
     """
 
@@ -89,13 +89,13 @@ _NARROWEST = 14.0  # least width of a card, in units of the type size
 _LEADING = 1.2  # distance from line to line, in units of the type size
 
 
-def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float) -> float:
+def put_numbers(measure: TextMeasure, readings: Sequence[Reading], look: Theme, below: float) -> float:
     """Write numbers as cards in one row, or in several rows on a narrow page; return the height of all cards [pt].
 
     Parameters
     ----------
-    pen : Pen
-        The pen of the page.
+    measure : TextMeasure
+        Measures the text of the page.
     readings : sequence of Reading
         The headline numbers. Without any, nothing is drawn and the height is 0.
     look : Theme
@@ -111,10 +111,10 @@ def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float
     >>> drawing = Figure(figsize=(7.2, 4.5))
     >>> _ = FigureCanvasAgg(drawing)
     >>> cape = Reading("CAPE", "2270", "± 30 J/kg", "parcel theory 2290 J/kg", "difference −20 J/kg")
-    >>> 40.0 < put_numbers(Pen(drawing), [cape], THEMES["notes"], 0.0) < 60.0
+    >>> 40.0 < put_numbers(TextMeasure(drawing), [cape], THEMES["notes"], 0.0) < 60.0
     True
     """
-    figure = pen.figure
+    figure = measure.figure
     width = 72.0 * figure.get_figwidth() - look.text
     columns = max(1, min(len(readings), int(width / (_NARROWEST * look.text))))
     each, large, top = width / columns, _LARGE * look.title, below
@@ -129,12 +129,12 @@ def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float
         for place, reading in enumerate(readings[first : first + columns]):
             left, base = 0.5 * look.text + place * each, top + 0.95 * large
             write(reading.number, left, base, size=large, color=DARK, weight="bold", va="baseline")
-            after = left + pen.width(reading.number, large, "bold") + 0.4 * look.text
+            after = left + measure.width(reading.number, large, "bold") + 0.4 * look.text
             write(reading.error, after, base, color=DARK, va="baseline")
             beside = ", ".join(part for part in (reading.theory, reading.difference) if part)
             base += 0.25 * large
             for words, colour in ((reading.label, DARK), (beside, FAINT)):
-                for line in pen.wrap(words, each - look.text, look.text).split("\n") if words else ():
+                for line in measure.wrap(words, each - look.text, look.text).split("\n") if words else ():
                     base += _LEADING * look.text
                     write(line, left, base, color=colour, va="baseline")
             lowest = max(lowest, base)
@@ -155,7 +155,7 @@ Draw = Callable[[Figure, SubplotSpec, Panel, Axes | None], tuple[Axes, list[Entr
 """
 
 
-class Plate(NamedTuple):
+class Graph(NamedTuple):
     """A panel on the page."""
 
     axes: Axes
@@ -214,15 +214,15 @@ def page(
     """
     with style(look):
         drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
-        pen = Pen(drawing)
-        top = put_heading(pen, heading, look)
-        above = top + put_numbers(pen, readings, look, top)
+        measure = TextMeasure(drawing)
+        top = put_heading(measure, heading, look)
+        above = top + put_numbers(measure, readings, look, top)
         top = above + height
         if look.grows:
             drawing.set_figheight(drawing.get_figheight() + top / 72)
-        plates = put_panels(drawing, panels, look, dataset, draw) if panels else []
-        put_footer(pen, small, look)
-        settle(pen, plates, look, top)
+        graphs = put_panels(drawing, panels, look, dataset, draw) if panels else []
+        put_footer(measure, small, look)
+        settle(measure, graphs, look, top)
         if put is not None:
             put(drawing, above)
     return drawing
@@ -252,7 +252,7 @@ def blank(size: tuple[float, float], look: Theme) -> Figure:
     return drawing
 
 
-def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw) -> list[Plate]:
+def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw) -> list[Graph]:
     """Draw every panel at its place on the page.
 
     Parameters
@@ -270,7 +270,7 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
 
     Returns
     -------
-    list of Plate
+    list of Graph
         The panels on the page; `settle` writes the text around them.
 
     Examples
@@ -282,37 +282,37 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
     >>> page = blank((4.0, 3.0), look)
-    >>> plates = put_panels(page, (panel, panel), look, dataset, painter(dataset, look))
-    >>> [(plate.row, plate.column) for plate in plates]
+    >>> graphs = put_panels(page, (panel, panel), look, dataset, painter(dataset, look))
+    >>> [(graph.row, graph.column) for graph in graphs]
     [(0, 0), (0, 1)]
     """
     columns = _columns(panels)
     widths = [_WIDTHS[panels[column[0]].kind] for column in columns]
     grid = drawing.add_gridspec(max(map(len, columns)), len(columns), width_ratios=widths)
-    plates: list[Plate] = []
+    graphs: list[Graph] = []
     for place, column in enumerate(columns):
         shared = len(column) > 1 and _same_abscissa(*(panels[index] for index in column))
         for row, index in enumerate(column):
             panel, spot = panels[index], grid[row if len(column) > 1 else slice(None), place]
-            axes, entries = draw(drawing, spot, panel, plates[-1].axes if shared and row else None)
+            axes, entries = draw(drawing, spot, panel, graphs[-1].axes if shared and row else None)
             x, y = axis_labels(dataset, panel)
             labels = (("", x[1]) if shared and not row else x, y)
             note = axes.annotate(
                 "", (0.0, 1.0), (0.0, 0.0), xycoords="axes fraction", textcoords="offset points", va="top",
                 size=look.text, linespacing=1.2, annotation_clip=False,
             )  # fmt: skip
-            plates.append(Plate(axes, panel, entries, note, labels, row, place))
-        drawing.align_ylabels([plate.axes for plate in plates if plate.column == place])
-    return plates
+            graphs.append(Graph(axes, panel, entries, note, labels, row, place))
+        drawing.align_ylabels([graph.axes for graph in graphs if graph.column == place])
+    return graphs
 
 
-def put_footer(pen: Pen, small: str, look: Theme) -> None:
+def put_footer(measure: TextMeasure, small: str, look: Theme) -> None:
     """Write the small type below all panels.
 
     Parameters
     ----------
-    pen : Pen
-        The pen of the page.
+    measure : TextMeasure
+        Measures the text of the page.
     small : str
         The text.
     look : Theme
@@ -322,23 +322,23 @@ def put_footer(pen: Pen, small: str, look: Theme) -> None:
     --------
     >>> from atmosbox.plot.theme import THEMES
     >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> put_footer(Pen(drawing), "atmosbox", THEMES["notes"])
+    >>> put_footer(TextMeasure(drawing), "atmosbox", THEMES["notes"])
     >>> [text.get_text() for text in drawing.texts]
     ['atmosbox']
     """
-    width = 72 * pen.figure.get_figwidth()
+    width = 72 * measure.figure.get_figwidth()
     # Type that is fitted to the pixels of a screen may be narrower than in print.
-    small = pen.wrap(small, 0.98 * (width - look.text), look.small)
-    pen.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
+    small = measure.wrap(small, 0.98 * (width - look.text), look.small)
+    measure.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
 
 
-def put_heading(pen: Pen, heading: str, look: Theme) -> float:
+def put_heading(measure: TextMeasure, heading: str, look: Theme) -> float:
     """Write a heading above all panels; return the height that it takes [pt].
 
     Parameters
     ----------
-    pen : Pen
-        The pen of the page.
+    measure : TextMeasure
+        Measures the text of the page.
     heading : str
         The text; an empty one takes no space.
     look : Theme
@@ -347,28 +347,28 @@ def put_heading(pen: Pen, heading: str, look: Theme) -> float:
     Examples
     --------
     >>> from atmosbox.plot.theme import THEMES
-    >>> put_heading(Pen(blank((4.0, 3.0), THEMES["notes"])), "", THEMES["notes"])
+    >>> put_heading(TextMeasure(blank((4.0, 3.0), THEMES["notes"])), "", THEMES["notes"])
     0.0
     """
     if not heading:
         return 0.0
-    width, height = (72 * float(size) for size in pen.figure.get_size_inches())
+    width, height = (72 * float(size) for size in measure.figure.get_size_inches())
     size = 1.3 * look.title
-    heading = pen.wrap(heading, width - look.text, size, "bold")
+    heading = measure.wrap(heading, width - look.text, size, "bold")
     place = (0.5 * look.text / width, 1.0 - 0.5 * look.text / height)
-    text = pen.figure.text(*place, heading, fontsize=size, weight="bold", va="top")
+    text = measure.figure.text(*place, heading, fontsize=size, weight="bold", va="top")
     text.set_in_layout(False)
-    return pen.height(text) + look.text
+    return measure.height(text) + look.text
 
 
-def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None:
+def settle(measure: TextMeasure, graphs: list[Graph], look: Theme, top: float = 0.0) -> None:
     """Write titles, notes, legends and labels around the panels, in lines that are as long as a panel is wide.
 
     Parameters
     ----------
-    pen : Pen
-        The pen of the page.
-    plates : list of Plate
+    measure : TextMeasure
+        Measures the text of the page.
+    graphs : list of Graph
         Its panels, from `put_panels`.
     look : Theme
         The theme: sizes of type and lines. If it allows the page to grow, the page becomes higher for much text.
@@ -384,38 +384,38 @@ def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),), y_label="height"), THEMES["notes"]
     >>> drawing = blank((4.0, 3.0), look)
-    >>> settle(Pen(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look)), look)
+    >>> settle(TextMeasure(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look)), look)
     >>> drawing.axes[0].get_ylabel()
     'height'
     """
-    drawing = pen.figure
+    drawing = measure.figure
     engine, height = drawing.get_layout_engine(), drawing.get_figheight()
     assert engine is not None
     for _ in range(_ROUNDS):
         if top:
             engine.set(rect=(0.0, 0.0, 1.0, 1.0 - top / 72 / drawing.get_figheight()))  # type: ignore[call-arg]
         engine.execute(drawing)
-        for plate in plates:
-            plate.axes.apply_aspect()
-            _write_labels(pen, plate, look)
+        for graph in graphs:
+            graph.axes.apply_aspect()
+            _write_labels(measure, graph, look)
         # The texts of a column have the same left edge, and the titles of a row have the same height.
-        ink = [plate.axes.yaxis.get_tightbbox().x0 for plate in plates]  # type: ignore[union-attr]
-        edge = {p.column: min(x for x, o in zip(ink, plates, strict=True) if o.column == p.column) for p in plates}
-        heights = [_write_legend(pen, plate, edge[plate.column], look) for plate in plates]
-        tops = {p.row: max(h for h, o in zip(heights, plates, strict=True) if o.row == p.row) for p in plates}
-        for plate in plates:
-            _write_title(pen, plate, edge[plate.column], tops[plate.row], look)
+        ink = [graph.axes.yaxis.get_tightbbox().x0 for graph in graphs]  # type: ignore[union-attr]
+        edge = {p.column: min(x for x, o in zip(ink, graphs, strict=True) if o.column == p.column) for p in graphs}
+        heights = [_write_legend(measure, graph, edge[graph.column], look) for graph in graphs]
+        tops = {p.row: max(h for h, o in zip(heights, graphs, strict=True) if o.row == p.row) for p in graphs}
+        for graph in graphs:
+            _write_title(measure, graph, edge[graph.column], tops[graph.row], look)
         if look.grows:
             drawing.set_figheight(height + max(0.0, sum(tops.values()) - _TEXT_LINES * look.text) / 72)
     engine.execute(drawing)
 
 
-def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
+def _write_labels(measure: TextMeasure, graph: Graph, look: Theme) -> None:
     """Write ticks and labels for the present size of the axes."""
-    axes, panel, size = plate.axes, plate.panel, look.text
-    extent, point = axes.get_window_extent(), pen.figure.dpi / 72
+    axes, panel, size = graph.axes, graph.panel, look.text
+    extent, point = axes.get_window_extent(), measure.figure.dpi / 72
     width, height = extent.width / point, extent.height / point
-    (x_label, x_unit), (y_label, y_unit) = plate.labels
+    (x_label, x_unit), (y_label, y_unit) = graph.labels
     power = 0
     if panel.kind == "skewt":
         fit_skewt(axes, width, height, size)
@@ -423,7 +423,7 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
         log = panel.x_scale == "log"
         power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
     if x_label:
-        axes.set_xlabel(pen.wrap(labelled(x_label, x_unit, power) if x_unit else x_label, width, size))
+        axes.set_xlabel(measure.wrap(labelled(x_label, x_unit, power) if x_unit else x_label, width, size))
     else:
         axes.tick_params(axis="x", labelbottom=False)
     log = panel.y_scale == "log"
@@ -431,22 +431,22 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
     # The label may extend beyond both ends of the axis into the gaps that are there anyhow. A line that is still too
     # long is written smaller, so that it does not run into the legend.
     room = height + 0.8 * size
-    label = pen.wrap(labelled(y_label, y_unit, power), room, size)
-    longest = max(pen.width(line, size) for line in label.split("\n")) if label else room
+    label = measure.wrap(labelled(y_label, y_unit, power), room, size)
+    longest = max(measure.width(line, size) for line in label.split("\n")) if label else room
     axes.set_ylabel(label, size=size * min(1.0, max(room / max(longest, 1e-9), _SMALLEST)))
 
 
-def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
+def _write_legend(measure: TextMeasure, graph: Graph, edge: float, look: Theme) -> float:
     """Put the legend above the axes and break the note into lines; return the height of both together [pt]."""
-    axes, size = plate.axes, look.text
-    extent, point = axes.get_window_extent(), pen.figure.dpi / 72
+    axes, size = graph.axes, look.text
+    extent, point = axes.get_window_extent(), measure.figure.dpi / 72
     room, height = (extent.x1 - edge) / point, _GAP * size
-    if len(plate.entries) > 1 or any(line.role != "data" for line in plate.panel.lines):
-        place = offset_copy(axes.transAxes, pen.figure, (edge - extent.x0) / point, height, units="points")
-        labels = [pen.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in plate.entries]
+    if len(graph.entries) > 1 or any(line.role != "data" for line in graph.panel.lines):
+        place = offset_copy(axes.transAxes, measure.figure, (edge - extent.x0) / point, height, units="points")
+        labels = [measure.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in graph.entries]
         for number in range(len(labels), 0, -1):
             legend = axes.legend(
-                [artists if len(artists) > 1 else artists[0] for artists, _ in plate.entries], labels,
+                [artists if len(artists) > 1 else artists[0] for artists, _ in graph.entries], labels,
                 loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=number, borderpad=0.0,
                 borderaxespad=0.0, handlelength=_HANDLE, handletextpad=_HANDLE_GAP, columnspacing=1.1,
                 labelspacing=0.25,
@@ -455,19 +455,19 @@ def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
                 break
         for line in legend.get_lines():
             line.set_linewidth(max(line.get_linewidth(), look.line))
-        height += pen.height(legend) + _GAP * size
-    plate.note.set_text(pen.wrap(plate.panel.note, room, size))
-    return height + (pen.height(plate.note) + _GAP * size if plate.panel.note else 0.0)
+        height += measure.height(legend) + _GAP * size
+    graph.note.set_text(measure.wrap(graph.panel.note, room, size))
+    return height + (measure.height(graph.note) + _GAP * size if graph.panel.note else 0.0)
 
 
-def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme) -> None:
+def _write_title(measure: TextMeasure, graph: Graph, edge: float, height: float, look: Theme) -> None:
     """Write the title at a height above the axes [pt], and below it the note."""
-    extent, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
-    title = pen.wrap(plate.panel.title, (extent.x1 - edge) / point, look.title, "bold")
+    extent, point = graph.axes.get_window_extent(), measure.figure.dpi / 72
+    title = measure.wrap(graph.panel.title, (extent.x1 - edge) / point, look.title, "bold")
     left = (edge - extent.x0) / extent.width
     # With y given, matplotlib does not look for ticks that the title would have to avoid.
-    plate.axes.set_title(title, loc="left", x=left, y=1.0, pad=height, fontsize=look.title, weight="bold")
-    plate.note.set_position(((edge - extent.x0) / point, height - _GAP * look.text))
+    graph.axes.set_title(title, loc="left", x=left, y=1.0, pad=height, fontsize=look.title, weight="bold")
+    graph.note.set_position(((edge - extent.x0) / point, height - _GAP * look.text))
 
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:

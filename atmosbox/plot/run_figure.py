@@ -18,7 +18,17 @@ from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve, unit_of
 from atmosbox.plot.draw import Entry, draw, hollow_points
 from atmosbox.plot.flow_picture import flow_height, put_flow
-from atmosbox.plot.layout import Draw, Pen, blank, page, put_footer, put_heading, put_numbers, put_panels, settle
+from atmosbox.plot.layout import (
+    Draw,
+    TextMeasure,
+    blank,
+    page,
+    put_footer,
+    put_heading,
+    put_numbers,
+    put_panels,
+    settle,
+)
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.theme import Theme, find, style
 from atmosbox.plot.units import spelled
@@ -247,24 +257,24 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         wide, high = (72.0 * size for size in look.wide)  # pt
         boxes = _HIGH * wide if look.grows else _HIGH_ON_SCREEN * high
         drawing = blank(look.wide, look)
-        pen = Pen(drawing)
-        top = put_heading(pen, str(dataset.attrs.get("title", "")) if look.heading else "", look)
-        top += put_numbers(pen, readings, look, top)
+        measure = TextMeasure(drawing)
+        top = put_heading(measure, str(dataset.attrs.get("title", "")) if look.heading else "", look)
+        top += put_numbers(measure, readings, look, top)
         if look.grows:
             drawing.set_figheight((high + top + boxes) / 72.0)
         each = (1.0 - _BAR) / len(_INSTANTS)
         spots = [(place * each, 0.5, 0.96 * each, 0.1) for place in range(len(_INSTANTS))]
         pictures = [box_picture(drawing.add_axes(spot), dataset, held, look) for spot in spots]
-        plates = put_panels(drawing, panels, look, dataset, painter(dataset, look))
+        graphs = put_panels(drawing, panels, look, dataset, painter(dataset, look))
         words = " · ".join([footer(dataset), *pictures[0].legend()])
-        put_footer(pen, words + explanation(dataset, panels), look)
-        settle(pen, plates, look, top + boxes)
-        _put_boxes(pen, dataset, held, pictures, (top, top + boxes), look)
+        put_footer(measure, words + explanation(dataset, panels), look)
+        settle(measure, graphs, look, top + boxes)
+        _put_boxes(measure, dataset, held, pictures, (top, top + boxes), look)
     return drawing
 
 
 def _put_boxes(
-    pen: Pen,
+    measure: TextMeasure,
     dataset: xr.Dataset,
     held: Molecules,
     pictures: list[BoxPicture | PlanarPicture],
@@ -275,7 +285,7 @@ def _put_boxes(
 
     ``room`` gives the distances of the upper and of the lower end of this row from the upper end of the page [pt].
     """
-    high = 72.0 * float(pen.figure.get_figheight())
+    high = 72.0 * float(measure.figure.get_figheight())
     each, top = (1.0 - _BAR) / len(pictures), 1.0 - (room[0] + 0.5 * look.text) / high
     frames = [round(part * (len(held.time) - 1)) for part in _INSTANTS]
     said = [_said(dataset, held, moment) for moment in frames]
@@ -284,11 +294,11 @@ def _put_boxes(
     below = top - (1.35 * lines + 0.3) * look.text / high
     for place, (picture, moment, text) in enumerate(zip(pictures, frames, said, strict=True)):
         left = place * each
-        pen.figure.text(left + each / 2, top, text, fontsize=look.text, ha="center", va="top").set_in_layout(False)
+        measure.figure.text(left + each / 2, top, text, fontsize=look.text, ha="center", va="top").set_in_layout(False)
         picture.axes.set_position((left + 0.05 * each, bottom, 0.9 * each, below - bottom))
         picture.fit()
         picture.artists(moment)
-    speed_bar(pen.figure, pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
+    speed_bar(measure.figure, pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
 
 
 def _said(dataset: xr.Dataset, held: Molecules, moment: int) -> str:
