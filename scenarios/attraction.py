@@ -87,6 +87,8 @@ EVAPORATING = 0.25, 0.75
 """Shares of the molecules in the vapour between which the drop is said to evaporate."""
 GONE = 0.05
 """Share of the molecules in the largest drop below which only vapour is left."""
+DROP = 0.1
+"""Share of the molecules from which on the largest cluster is a drop, with its vapour around it."""
 THIN = 0.03
 """Density [diameter^-3] up to which the pressure of a gas is compared with its first three virial coefficients."""
 
@@ -164,6 +166,11 @@ def _densities(warmth: float) -> tuple[float, float]:
     below = max(1.0 - warmth / law.WELL_CRITICAL_TEMPERATURE, 0.0)
     vapour = 1.3 * float(law.well_vapor_pressure(warmth)) / warmth
     return rounded(law.WELL_CRITICAL_DENSITY + 0.57 * below**0.35), rounded(vapour)
+
+
+def _liquid_density(settings: Settings) -> float:
+    """Return the approximate density of the liquid of the drops [diameter^-3]."""
+    return _densities(min(_warmth(settings), 1.2))[0]
 
 
 def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.ndarray:
@@ -262,7 +269,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         scale,
         settings.si.duration / scale.time,
         FRAMES,
-        (Air(), Clusters(n), *slab),
+        (Air(), Clusters(n, _liquid_density(settings)), *slab),
         samples=10 if slab else 4,
         settle=SETTLE,
         facts={
@@ -289,9 +296,10 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         saturated = float(law.well_vapor_pressure(_warmth(settings))) * settings.attraction * scale.pressure
         found["normal_pressure_theory"] = np.full(frames, saturated)
     elif not settings.air:
-        density = _densities_of_vapour(dataset, settings)[1]
-        if _Vapour(dataset, settings).alone:
-            density = np.full(frames, settings.density * law.WELL_CRITICAL_DENSITY)
+        # without a drop all molecules are the gas, also those that touch by chance
+        drop = dataset.largest_drop_molecule_count.values >= DROP * settings.molecules
+        whole = settings.density * law.WELL_CRITICAL_DENSITY
+        density = np.where(drop, _densities_of_vapour(dataset, settings)[1], whole)
         pressure = _pressure_of_gas(density, dataset.air_temperature.values / scale.temperature, settings)
         # where the series is negative it is not valid: a vapour so cold and dense must condense
         found["virial_pressure_theory"] = np.where(pressure > 0.0, pressure, np.nan)
@@ -487,7 +495,7 @@ def _densities_of_vapour(dataset: "xr.Dataset", settings: Settings) -> list[np.n
     drops = dataset.drop_count.values
     others = np.maximum(drops - 1.0, 1.0)
     sizes = (largest, np.ones(len(drops))), ((settings.molecules - number - largest) / others, others)
-    box, dense = math.prod(_sides(settings)[0]), _densities(min(_warmth(settings), 1.2))[0]
+    box, dense = math.prod(_sides(settings)[0]), _liquid_density(settings)
     held = [
         sum(
             many * (size > 0.0) * 4.0 / 3.0 * np.pi * (np.cbrt(0.75 * size / (np.pi * dense)) + out) ** 3
@@ -507,7 +515,7 @@ class _Vapour:
         self.measured = half.virial_pressure.values
         self.kT = half.air_temperature.values / self.scale.temperature
         number, largest = half.vapor_molecule_count.values, half.largest_drop_molecule_count.values
-        self.alone = largest.mean() < 0.1 * settings.molecules
+        self.alone = largest.mean() < DROP * settings.molecules
         self.density = _densities_of_vapour(half, settings)
         # the variance of the number of molecules of a gas that may leave it, from its compressibility
         density, depth = float(self.density[1][-1]), max(settings.attraction, 1e-9)

@@ -48,13 +48,14 @@ def lists(parcel: Any) -> Lists:
 def crowd(setup: Setup) -> Crowd:
     """Return the data of the drops at the start, without any drop."""
     number = setup.parcel.number
-    members = next((each._molecules for each in setup.instruments if type(each) is Clusters), 0)
+    clusters = next((each for each in setup.instruments if type(each) is Clusters), Clusters(0))
     return Crowd(
-        members=members,
+        members=clusters._molecules,
         crowded=CROWDED,
         wells=np.zeros(number, np.int64),
         drop=np.zeros(number, np.int64),
         size=np.zeros(number, np.int64),
+        liquid=clusters.liquid,
         virial=np.zeros(1),
         gas_law=_gas_law(),
     )

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.elementary import expm1
+from atmosbox.engine.core.elementary import cbrt, expm1
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import wall_kT
@@ -48,9 +48,9 @@ class Crowd(NamedTuple):
     ``members`` is the number of molecules that attract each other, which come first; ``crowded`` the smallest number of
     wells that a molecule inside a drop is in. ``wells``, ``drop``, ``size : (molecule,)``: for each molecule the number
     of wells that it is in, the molecule that represents its drop (-1 in the vapour), and the size of the drop that it
-    represents. ``virial : (1,)`` is the virial at the end of the last frame [energy]; ``gas_law : (2, 4)`` the
-    coefficients of p / n k T - 1 of a gas: rows for the powers 1 and 2 of its density, columns for the powers 0 to 3
-    of e^(strength / kT) - 1.
+    represents; ``liquid`` the density of the liquid in drops [1/length^3]. ``virial : (1,)`` is the virial at the end
+    of the last frame [energy]; ``gas_law : (2, 4)`` the coefficients of p / n k T - 1 of a gas: rows for the powers 1
+    and 2 of its density, columns for the powers 0 to 3 of e^(strength / kT) - 1.
     """
 
     members: int
@@ -58,6 +58,7 @@ class Crowd(NamedTuple):
     wells: Any
     drop: Any
     size: Any
+    liquid: float
     virial: Any
     gas_law: Any
 
@@ -134,6 +135,22 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return density * kT * factor if factor > 0.0 else math.nan
 
     @kernel
+    def drop_volume(size, liquid):
+        """Return the volume of a drop of ``size`` molecules, out to half the range of the attraction."""
+        radius = cbrt(0.75 * size / (math.pi * liquid)) + 0.75
+        return 4.0 / 3.0 * math.pi * radius * radius * radius if size > 0.0 else 0.0
+
+    @kernel
+    def vapour_density(largest, vapour, drops, volume, crowd):
+        """Return the density of the free vapour around drops; without a drop, that of all molecules."""
+        if largest < 0.1 * crowd.members:
+            return crowd.members / volume
+        others = max(drops - 1.0, 1.0)
+        held = drop_volume(1.0 * largest, crowd.liquid)
+        held += others * drop_volume((crowd.members - vapour - largest) / others, crowd.liquid)
+        return vapour / max(volume - held, 0.1 * volume)
+
+    @kernel
     def end_frame(gas, ascent, book, gauges, lists, crowd):
         """Take the readings at the end of a frame, and complete the means of the frame."""
         lasted = -gauges.before[6]
@@ -167,7 +184,8 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
         reading[FIRST + DropReading.PRESSURE] = (motion + (virial - crowd.virial[0]) / (3.0 * lasted)) / volume
         reading[FIRST + DropReading.WELLS] = np.sum(gas.wells.number)
         reading[FIRST + DropReading.BATH_KT] = wall_kT(gas.bath, 0, reading[Reading.TIME])
-        reading[FIRST + DropReading.GAS_PRESSURE] = gas_pressure(vapour / volume, kT, lists.strength[0], crowd.gas_law)
+        density = vapour_density(largest, vapour, drops, volume, crowd)
+        reading[FIRST + DropReading.GAS_PRESSURE] = gas_pressure(density, kT, lists.strength[0], crowd.gas_law)
         crowd.virial[0] = virial
         # the ledger: see `Account.ledger`
         given, passed = heat + work, abs(heat) + abs(work)

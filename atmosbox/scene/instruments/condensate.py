@@ -72,10 +72,13 @@ class Clusters:
     ----------
     molecules
         Number of molecules that attract each other; they are the first ones.
+    liquid
+        Density of the liquid, from which a page estimates the volume of the drops [1/length^3].
     """
 
-    def __init__(self, molecules: int) -> None:
+    def __init__(self, molecules: int, liquid: float = 1.0) -> None:
         self._molecules = molecules
+        self.liquid = liquid
         self._kT: list[float] = []
         self._rows: list[dict[str, float]] = []
         self._virial = 0.0
