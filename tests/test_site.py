@@ -36,7 +36,14 @@ VERBATIM = {"code", "pre", "script", "style", "math", "title"}
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 SHOWN = ["elastic-collisions"]
 """Scenes in the gallery of this test; each takes seconds."""
-PARTS = ["Run it", "What to notice, what to try", "Settings", "What is modelled, left out, exaggerated", "Theory"]
+PARTS = [
+    "Run it",
+    "What is prescribed, and what emerges",
+    "What to notice, what to try",
+    "Settings",
+    "What is modelled, left out, exaggerated",
+    "Theory",
+]
 PARTS += ["What it does not show", "Questions"]
 PLAIN = {"COLUMNS": "100", "NO_COLOR": "1"}
 ENVIRONMENT = {**os.environ, **PLAIN, "PYTHONPATH": str(ROOT), "MPLBACKEND": "agg"}
@@ -214,16 +221,19 @@ def test_the_contents_are_the_links_of_a_page_under_its_headings(monkeypatch):
 
 
 def test_a_scene_has_a_page_with_all_its_parts():
-    for name in scenarios.names():
-        text = (DOCS / "scenes" / f"{name}.md").read_text(encoding="utf-8")
-        title, picture, story, *_ = text.split("\n\n")
+    for path in sorted(DOCS.glob("scenes/*.md")):
+        name, text = path.stem, path.read_text(encoding="utf-8")
+        title, seen, level, goals, predict, picture, *_ = text.split("\n\n")
         assert title.startswith("# ")
+        assert seen.startswith("You will see ")
+        assert f"<!-- number:scenes.{name} -->" in level
+        assert len(re.findall("^- ", goals, re.MULTILINE)) == 3
+        assert predict.startswith("**Predict first:**")
         assert re.fullmatch(r"!\[.{20,}\]\(\.\./figures/[\w-]+\.png\)", picture, re.DOTALL)
-        assert len(re.findall(r"[.?!](?:\s|$)", story)) >= 3
         headings = re.findall(r"^## (.+)$", text, re.MULTILINE)
         assert [heading for heading in headings if heading in PARTS] == PARTS
         sections = dict(zip(headings, re.split(r"^## .+$", text, flags=re.MULTILINE)[1:], strict=True))
-        assert f"atmosbox run {name}\n" in sections["Run it"]
+        assert re.search(rf"^atmosbox run {name}( --save-molecules)?$", sections["Run it"], re.MULTILINE)
         assert f"<!-- table:parameters.{name} -->" in sections["Settings"]
         assert f"<!-- table:facts.{name} -->" in sections["What is modelled, left out, exaggerated"]
         assert "doi" in sections["Theory"]

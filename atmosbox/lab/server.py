@@ -124,9 +124,9 @@ class Server(socketserver.ThreadingTCPServer):
                 return
         if port is None:
             said = f"{PORT} to {PORT + _TRIES - 1}"
-            raise SettingError("port", said, "are all in use", "end another program, or give --port with a free one")
+            raise SettingError("port", said, "are all in use", "end another program, or give a free ", Option("port"))
         raise SettingError(
-            "port", port, "is in use or not allowed", "give another, or leave --port out for a free one"
+            "port", port, "is in use or not allowed", "give another, or leave ", Option("port"), " out for a free one"
         ) from problem
 
     @property

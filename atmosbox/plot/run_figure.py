@@ -170,7 +170,7 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     ['A box']
     """
     if "atmosbox_panels" not in dataset.attrs:
-        raise FileError("The file does not say what its figure shows: it was not written by atmosbox run.")
+        raise FileError("The file does not say what its figure shows: atmosbox did not write it.")
     try:
         panels = from_json(dataset.attrs["atmosbox_panels"])
     except ValueError as error:
@@ -246,7 +246,7 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     >>> import xarray as xr
     >>> figure_with_box(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "lifting-dry"}'}))
     Traceback (most recent call last):
-    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run lifting-dry --save-molecules.
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("lifting-dry", save_molecules=True).
     """
     look, held = find(theme), molecules(dataset)
     panels = tuple(panel for panel in panels_of(dataset) if panel.kind != "discs")

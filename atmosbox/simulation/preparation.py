@@ -168,7 +168,7 @@ def usual_engine(module: ModuleType, settings: SceneSettings) -> EngineChoice:
 
     Examples
     --------
-    >>> str(prepare("atmosphere").engine).partition(":")[0]
+    >>> str(prepare("atmosphere", {}).engine).partition(":")[0]
     'dsmc'
     """
     own = getattr(module, "usual_engine", None)
