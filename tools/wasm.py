@@ -134,7 +134,9 @@ def main() -> None:
     """Compile the modules of some scenes, or of all; or name the stale modules."""
     asked = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     asked.add_argument("--check", action="store_true", help="only say which modules are stale")
-    asked.add_argument("scenes", nargs="*", default=[*SCENES], help="only those that these scenes need")
+    asked.add_argument(
+        "scenes", nargs="*", default=[*SCENES], help="only those that these scenes need; others stay as they are"
+    )
     options = asked.parse_args()
     stamp = source_stamp()
     if options.check:
@@ -143,9 +145,10 @@ def main() -> None:
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as apart:
         wanted = apart.submit(needed, options.scenes).result()
     FOLDER.mkdir(exist_ok=True)
-    for path in FOLDER.glob("*.wasm.gz"):
-        if stamp_of(path.read_bytes()) != stamp:
-            path.unlink()
+    if options.scenes == [*SCENES]:
+        for path in FOLDER.glob("*.wasm.gz"):
+            if path.name.removesuffix(".wasm.gz") not in wanted:
+                path.unlink()
     for name, (modes, wells, types) in wanted.items():
         begun = time.perf_counter()
         content = module_of(modes, wells, types)

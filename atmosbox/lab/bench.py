@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from atmosbox import theory as law
 from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH
@@ -17,6 +18,8 @@ from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.errors import SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
+from atmosbox.lab.kernels.flowing import Flow as Wind
+from atmosbox.lab.kernels.flowing import can_flow
 from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.laying_out import Column, Layout
 from atmosbox.lab.kernels.passing import Book
@@ -33,6 +36,7 @@ from atmosbox.scene.instruments import (
     Air,
     Clusters,
     Discs,
+    Flow,
     Layers,
     Leaving,
     Lift,
@@ -42,6 +46,7 @@ from atmosbox.scene.instruments import (
     Speeds,
     Water,
 )
+from atmosbox.scene.instruments.flow import LOW
 from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
 
@@ -58,9 +63,13 @@ _CORNERS = 4
 _SPARE = 1.5
 _LONGER = 4
 """Factor by which the rows of cells can grow, because memory is reserved for that."""
-_INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
+_INSTRUMENTS = (Air, Clusters, Discs, Flow, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _READINGS = 64
+_DENSITIES = 129
+"""Number of densities at which the adiabatic lapse rate is tabulated, up to that at which discs freeze."""
+_FRESH = 0.2
+"""Share by which the newest frame counts in the wind that is drawn."""
 
 
 class Bench(NamedTuple):
@@ -118,6 +127,8 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     """
     parcel: Any = setup.parcel
     unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
+    if not _is_measured(_of(setup, Flow), _of(setup, Layers), parcel):
+        unknown.append(Flow.__name__)
     why = None
     if str(prepared.engine) != "exact":
         why = "runs in the page with the exact engine alone"
@@ -129,6 +140,14 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = f"has an instrument that is not compiled for the page, {unknown[0]}"
     if why is not None:
         raise SettingError("scene", prepared.scene, why, *elsewhere(prepared.scene))
+
+
+def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
+    """Return whether there is no wind, or a wind that kernels can measure in the parts of the layers."""
+    if flow is None:
+        return True
+    parts = None if layers is None else (layers._number, layers._columns)
+    return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel._modes) and flow._shape == parts
 
 
 def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> Bench:
@@ -288,12 +307,47 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
         counts=np.zeros(edges.size - 1),
         speeds=np.zeros(edges.size - 1),
         sums=np.zeros((4, number)),
-        layers=np.zeros(4 * number),
-        scratch=np.zeros((6, number)),
+        layers=np.zeros(5 * number),
+        scratch=np.zeros((6, number if layers is None else number * layers._columns)),
         half=half,
         running=np.zeros(8),
         mixture=_mixture(setup),
         water=hygrometer(prepared, setup),
+        flow=_wind(setup),
+    )
+
+
+def _wind(setup: Setup) -> Any:
+    """Return the data of the wind; empty arrays in a scene that does not measure it, 0 if no kernel can."""
+    flow, parcel = _of(setup, Flow), setup.parcel
+    if not can_flow(parcel._modes) or type(parcel) is not ParcelSet:  # type: ignore[attr-defined]
+        return 0
+    rows, columns = (0, 0) if flow is None else flow._shape
+    high, phases, lapse, dense = np.zeros(0), np.zeros((0, 0)), np.zeros(2), 1.0
+    if flow is not None:
+        flow._turn = bool(parcel.periodic[0])
+        wave = flow._waves()[:, None] * (math.pi * (np.arange(columns) + 0.5) / columns)
+        phases = np.concatenate([np.cos(wave), np.sin(wave)] if flow._turn else [np.cos(wave)])
+        high = np.sin(math.pi * (np.arange(rows) + 0.5) / rows)
+        gas = law.Gas(2 if parcel.planar else 3, float(parcel.diameter[0]))
+        dense = law.FREEZING_PACKING_FRACTION_DISCS / float(law.packing_fraction_discs(1.0, gas.diameter))
+        lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), parcel.gravity))
+    return Wind(
+        sums=np.zeros((3, rows * columns)),
+        upright=np.zeros(rows * columns),
+        total=np.zeros(4),
+        high=high,
+        wave=phases,
+        column=np.zeros((2, columns)),
+        tagged=np.zeros(0 if flow is None else parcel.number, np.int64),
+        release=0 if flow is None else flow._release,
+        low=LOW * float(parcel.length[2]),
+        near=LOW if flow is not None and flow._chimney else 1.0,
+        wind=np.zeros((2, rows * columns)),
+        fresh=_FRESH,
+        lapse=lapse,
+        dense=dense,
+        adiabat=np.full(rows, math.nan),
     )
 
 
@@ -327,7 +381,7 @@ def _averages(setup: Setup) -> tuple[Average, Average]:
     """
     speeds, layers = _of(setup, Speeds), _of(setup, Layers)
     shares = 0 if speeds is None else speeds._edges.size - 1
-    profiles = 0 if layers is None else 4 * layers._number
+    profiles = 0 if layers is None else 5 * layers._number
     memory = 0.0 if layers is None else layers._memory
     return _average(shares, 1), _average(profiles, max(1, math.ceil(2.0 * memory / setup.frame)))
 

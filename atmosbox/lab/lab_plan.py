@@ -52,7 +52,11 @@ _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
 _FIGURES = 4
 """Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
-_KNOBS = ("temperature", "altitude", "way", "open_pool", "attraction")
+_KNOBS = (
+    "temperature", "floor_temperature", "ceiling_temperature", "altitude", "way", "open_pool", "attraction",
+)  # fmt: skip
+_AT_REST = "layer_temperature_conduction"
+"""The temperature of air at rest between the walls of the start; it ends when one of them is turned."""
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
@@ -89,12 +93,14 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
     wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
     wanted |= {"sight.state", "sight.drops", "sight.many"}
+    wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _is_windy(box) else set()
     wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)
     begun = short_run(prepared)
     readings = _readings(box)
     if not np.isfinite(begun.air_pressure.values).any():  # no wall on which pressure is measured
         readings = [each for each in readings if each[0] != "air_pressure"]
+    profiles = _profiles(box)
     if box.attracts:
         readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
     plan = {
@@ -130,10 +136,10 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
-        "profiles": _profiles(box),
+        "profiles": profiles,
         "fixed": _fixed(box),
-        "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels),
-        "planned": planned_alone(box),
+        "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles),
+        "planned": [_AT_REST] if _is_windy(box) else planned_alone(box),
         "knobs": numbers,
         "units": {},
         "command": _command(prepared),
@@ -169,17 +175,20 @@ def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
     return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
 
 
-def _drawn(found: list[dict[str, Any]], panels: tuple[Panel, ...]) -> list[dict[str, Any]]:
-    """Return tables of theory without profiles that no panel draws; the other profiles are rounded to `_FIGURES`.
+def _drawn(
+    found: list[dict[str, Any]], panels: tuple[Panel, ...], measured: list[tuple[str, str, int, int, float]]
+) -> list[dict[str, Any]]:
+    """Return tables of theory without profiles that no panel draws or that kernels compute, and without empty series.
 
-    Series are not rounded, because they are saved too.
+    The other profiles are rounded to `_FIGURES`. Series are not rounded, because they are saved too.
     """
     drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error, line.minus)}
+    drawn -= {name for name, *_ in measured}
     for table in found:
         table["curves"] = {
             name: [_seen(row) for row in rows] if isinstance(rows[0], list) else rows
             for name, rows in table["curves"].items()
-            if name in drawn or not isinstance(rows[0], list)
+            if (name in drawn if isinstance(rows[0], list) else any(value is not None for value in rows))
         }
     return found
 
@@ -207,6 +216,10 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
         ]
     if box.gauges.mixture.right.size:
         found += [("mixing_amplitude", Reading.AMPLITUDE, 1.0), ("mixing_entropy", Reading.ENTROPY, 1.0)]
+    if _is_windy(box):
+        speed = scale.velocity
+        found += [("wind_speed", Reading.WIND, speed), ("roll_speed", Reading.ROLLS, speed)]
+        found.append(("tracer_share_aloft", Reading.ALOFT, 1.0))
     found += water_readings(box) if box.modes.phases else []
     if any(type(each) is Lift for each in setup.instruments):
         found += [
@@ -244,6 +257,8 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
             ("layer_temperature", "layers", layers, layers, scale.temperature),
             ("layer_pressure", "layers", 2 * layers, layers, scale.pressure),
         ]
+    if _is_windy(box):
+        found.append(("layer_wind", "layers", 3 * layers, layers, scale.velocity))
     across = box.gauges.mixture.counts.shape[1]
     if across:
         found += [
@@ -251,11 +266,20 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
             for place, name in enumerate(MOMENTS)
         ]
     found += leaving_energies(box) if box.modes.phases else []
-    return [
+    told = [
         (name + end, f"{array}.{part}", first, count, float(factor))
         for name, array, first, count, factor in found
         for end, part in (("", "mean"), ("_se", "error"))
     ]
+    if _is_windy(box):
+        told.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, float(scale.temperature)))
+    return told
+
+
+def _is_windy(box: Bench) -> bool:
+    """Return whether the wind is measured."""
+    flow: Any = box.gauges.flow
+    return bool(flow and flow.high.size)
 
 
 def _fixed(box: Bench) -> dict[str, Any]:
@@ -284,10 +308,13 @@ def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
         told: dict[str, Any] = {"factor": one - zero, "offset": zero}
         if hasattr(setup.parcel, "vapour") and knob.name in ("temperature", "open_pool"):
             told = moist_knob(knob, told, setup.scale)
-        elif knob.name == "temperature":
+        elif knob.name.endswith("temperature"):
             unit = setup.scale.temperature
-            kernel = "warm_bath" if box.attracts and has_bath(setup) else "warm_walls"
-            told = {"kernel": kernel, "argument": "1", "factor": (one - zero) / unit, "offset": zero / unit}
+            bath = box.attracts and has_bath(setup)
+            kernel, argument = ("warm_bath", "1") if bath else ("warm_walls", "3")
+            told = {"kernel": kernel, "argument": argument, "factor": (one - zero) / unit, "offset": zero / unit}
+            if knob.wall is not None:
+                told["walls"] = {"1": knob.wall, "2": knob.wall + 1}
         elif knob.name == "attraction":
             told = {"kernel": "attract", "argument": "3", "factor": 1.0, "offset": 0.0}
         elif knob.name == "way":  # a part of its time

@@ -18,6 +18,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "temperature": {},
     "elastic-collisions": {},
     "atmosphere": {"molecules": 3000},
+    "convection": {},
     "lifting-dry": {},
     "temperature-large": {},
     "diffusion": {"molecules": 4000},

@@ -38,7 +38,7 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
         "note_frame": (gas, gauges, box.speeds, box.layers),
         "begin_averages_anew": (box.speeds, box.layers),
         "look": (gas, book, box.sight),
-    } | (_knobs(box) if box.modes.phases else {"warm_walls": (gas.walls, 1.0)})
+    } | (_knobs(box) if box.modes.phases else {"warm_walls": (gas.walls, 0, 6, 1.0)})
     if box.attracts:
         found |= {
             "begin": (gas, ascent, book, gauges, box.crowd),

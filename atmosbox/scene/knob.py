@@ -44,6 +44,8 @@ class Knob:
         Function that is called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
     leave
         Function that restores the box as it was before the knob was first turned; None if turning it to `value` does.
+    wall
+        The number of the wall whose temperature it sets; None for all walls, or for another property.
 
     Raises
     ------
@@ -66,6 +68,7 @@ class Knob:
     value: float
     turn: Callable[[float], None]
     leave: Callable[[], None] | None = None
+    wall: int | None = None
 
     def __post_init__(self) -> None:
         if not self.low <= self.value <= self.high:
@@ -117,7 +120,7 @@ def wall_temperature(
     def turn(kelvin: float) -> None:
         parcel.set_wall_kT(scale.reduced_temperature(kelvin), wall)
 
-    return _of_setting(settings, name, low, high, turn)
+    return replace(_of_setting(settings, name, low, high, turn), wall=wall)
 
 
 def warmed_walls(

@@ -23,6 +23,7 @@ SMALL = {
     "temperature": ({"molecules": 150}, 60),
     "elastic-collisions": ({}, 30),
     "atmosphere": ({"molecules": 3000}, 3),  # its layers are fitted to the molecules at the start, and when they fall
+    "convection": ({"molecules": 500}, 64),  # discs are released at the floor after 60 frames
     "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out anew twice
     "temperature-large": ({"molecules": 300}, 20),
     "diffusion": ({"molecules": 2000}, 8),
@@ -195,7 +196,7 @@ def state_of(parcel):
 
 ALIKE = ("lifting-sounding", "mountains")
 """These scenes use the module of lifting-moist."""
-FIXED = ("elastic-collisions",)
+FIXED = ("elastic-collisions", "convection")
 """In these scenes Python places the molecules, and a page offers only the seeds for which it has done so."""
 
 

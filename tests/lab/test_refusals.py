@@ -11,7 +11,6 @@ from atmosbox.simulation.preparation import prepare
     ("scene", "settings", "engine", "reason"),
     [
         ("condensation", {"molecules": 500, "drops": 3}, None, "DropSizes"),
-        ("convection", {"molecules": 500}, None, "Flow"),
         ("attraction", {"start": "slab", "density": 1.0}, None, "Slab"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
         ("atmosphere", {"molecules": 1000, "gravity": 100, "height": 1000}, "exact", "start=.equilibrium"),

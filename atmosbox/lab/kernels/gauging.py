@@ -15,6 +15,7 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
+from atmosbox.lab.kernels.flowing import ALOFT, ROLLS, WIND, Flow, across, flowing
 from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
 from atmosbox.lab.kernels.passing import ascent_of
 from atmosbox.lab.kernels.presence import is_away, number_in_gas
@@ -33,12 +34,14 @@ class Gauges(NamedTuple):
 
     ``edges : (bin + 1,)`` are the edges of the bins of speed [velocity], ``counts : (bin,)`` the molecules in them, and
     ``speeds : (bin,)`` the share of molecules by speed [1/velocity]. ``sums : (4, layer)`` are number, energy, degrees
-    of freedom and, at the end of the last frame, virial of each layer; ``layers : (4 layer,)`` the same of the last
-    frame, with virial per time; ``scratch : (6, layer)`` is scratch. All are empty in a scene that does not show them.
+    of freedom and, at the end of the last frame, virial of each layer; ``layers : (5 layer,)`` the same of the last
+    frame, with virial per time, and the wind along x; ``scratch : (6, part)`` is scratch for the parts of layers, whose
+    mean motion is not counted as warmth. All are empty in a scene that does not show them.
 
     ``half : (molecule,)`` is 0 for a light disc and 1 for a heavy one, empty if molecules are alike; ``running : (8,)``
     has sums of the mean energies of both halves [energy], the number of frames, the first energy, and the first
-    momentum. ``mixture`` are two gases that mix; ``water`` vapour and liquid, 0 in a box without water.
+    momentum. ``mixture`` are two gases that mix; ``water`` vapour and liquid, 0 in a box without water;
+    ``flow`` is the wind, 0 with kernels that do not measure it.
     """
 
     reading: Any
@@ -55,6 +58,7 @@ class Gauges(NamedTuple):
     running: Any
     mixture: Mixture
     water: Hygrometer | int
+    flow: Flow | int
 
 
 class Reading(IntEnum):
@@ -76,6 +80,9 @@ class Reading(IntEnum):
     AMPLITUDE = 13
     ENTROPY = 14
     WALL_KT = 15
+    WIND = WIND
+    ROLLS = ROLLS
+    ALOFT = ALOFT
 
 
 _TIME, _ENERGY = 6, 7
@@ -85,6 +92,7 @@ _TIME, _ENERGY = 6, 7
 def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``begin``, ``sample`` and ``end_frame`` of one set of modes."""
     begin_mixing, end_mixing = mixing(modes)
+    begin_wind, note_wind, sample_wind, end_wind = flowing(modes)
     begin_water, sample_water, condensed_energy, end_water = hygrometry(modes)
 
     @kernel
@@ -112,29 +120,37 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return kinetic, rotational, potential, px, py, pz
 
     @kernel
-    def sample_layers(gas, now, sums, scratch):
+    def sample_layers(gas, now, sums, scratch, flow):
         """Count the molecules of each layer, and the energy of their disordered motion: see `layer_sample`."""
-        layers = sums.shape[1]
+        layers, parts = sums.shape[1], scratch.shape[1]
+        columns = parts // layers
         height = ceiling(gas, now)
         planes = 2.0 if gas.box.planar else 3.0
         scratch[:] = 0.0
         for i in range(gas.molecules.size):
             at = motion_at(i, now, gas, modes)
             mass, _, _ = kind_of(i, gas, modes)
-            layer = min(max(int(at.z / height * layers), 0), layers - 1)
-            scratch[0, layer] += 1.0
-            scratch[1, layer] += mass
-            scratch[2, layer] += mass * at.vx
-            scratch[3, layer] += mass * at.vy
-            scratch[4, layer] += mass * at.vz
-            scratch[5, layer] += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
-        for layer in range(layers):
-            number, weight, energy = scratch[0, layer], scratch[1, layer], scratch[5, layer]
-            px, py, pz = scratch[2, layer], scratch[3, layer], scratch[4, layer]
+            part = min(max(int(at.z / height * layers), 0), layers - 1)
+            if columns > 1:
+                column = int(across(at.x, gas.box) * columns)
+                part = part * columns + min(max(column, 0), columns - 1)
+            scratch[0, part] += 1.0
+            scratch[1, part] += mass
+            scratch[2, part] += mass * at.vx
+            scratch[3, part] += mass * at.vy
+            scratch[4, part] += mass * at.vz
+            scratch[5, part] += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
+            note_wind(part, at.vz, flow)
+        for part in range(parts):
+            number, weight, energy = scratch[0, part], scratch[1, part], scratch[5, part]
+            px, py, pz = scratch[2, part], scratch[3, part], scratch[4, part]
+            layer = part // columns
             if number > 0.0:
                 sums[0, layer] += number
                 sums[1, layer] += energy - 0.5 * (px * px + py * py + pz * pz) / weight
                 sums[2, layer] += planes * (number - 1.0)
+        mass, _, _ = kind_of(0, gas, modes)
+        sample_wind(scratch, mass, gas.molecules.size, flow)
 
     @kernel
     def sample(gas, ascent, book, gauges):
@@ -161,7 +177,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
             kinetic, rotational, _, _, _, _ = energies(gas, now)
             sample_water(gas, ascent, book, kinetic + rotational, ceiling(gas, now), gauges)
         if gauges.sums.shape[1] > 0:
-            sample_layers(gas, now, gauges.sums, gauges.scratch)
+            sample_layers(gas, now, gauges.sums, gauges.scratch, gauges.flow)
         return 0
 
     @kernel
@@ -269,6 +285,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
             gauges.sums[3, layer] = gas.tallies.virial[layer]
         gauges.running[:] = 0.0
         begin_mixing(gauges.mixture)
+        begin_wind(gauges.flow)
         begin_water(gas, book, gauges)
         return 0
 
@@ -312,6 +329,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         if gauges.mixture.right.size > 0:
             reading[Reading.AMPLITUDE], reading[Reading.ENTROPY] = end_mixing(gas, now, time, gauges.mixture)
         end_lift(gas, ascent, book, gauges)
+        end_wind(gas, now, gauges)
         end_water(gas, ascent, book, time, lasted, gauges)
         gauges.warmth[:] = 0.0
         gauges.counts[:] = 0.0

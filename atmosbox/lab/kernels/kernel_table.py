@@ -13,6 +13,7 @@ from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.lab.kernels.attracting import attracting, warm_bath
 from atmosbox.lab.kernels.averaging import average, forget
 from atmosbox.lab.kernels.clustering import clustering
+from atmosbox.lab.kernels.flowing import adiabat, can_flow
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.height_profile import end_profile
 from atmosbox.lab.kernels.moist_passing import moist_knobs
@@ -24,9 +25,9 @@ __all__ = ["kernels"]
 
 
 @kernel
-def warm_walls(walls, kT):
-    """Set the temperature of all heat baths [energy]: see `ParcelSet.set_wall_kT`."""
-    for wall in range(6):
+def warm_walls(walls, first, last, kT):
+    """Set the temperature of the heat baths among some walls [energy]: see `ParcelSet.set_wall_kT`."""
+    for wall in range(first, last):
         if walls.law[wall] == HEAT_BATH:
             for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
                 walls.schedule_kT[k] = kT
@@ -62,6 +63,15 @@ def note_frame(gas, gauges, speeds, layers):
     return 0
 
 
+@kernel
+def note_windy_frame(gas, gauges, speeds, layers):
+    """Do the same, and compute the adiabat of the averages."""
+    note_frame(gas, gauges, speeds, layers)
+    if gauges.flow.adiabat.size > 0:
+        adiabat(gas.box.length_z, layers.mean, gauges.flow)
+    return 0
+
+
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
@@ -82,7 +92,7 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
             "begin": begin,
             "sample": sample,
             "end_frame": end_frame,
-            "note_frame": note_frame,
+            "note_frame": note_windy_frame if can_flow(modes) and not wells else note_frame,
             "begin_averages_anew": begin_averages_anew,
             "look": look,
         }

@@ -143,7 +143,7 @@ class Box {
         if (!Array.isArray(value)) row[name] = times?.[name] ? value * row[times[name]] : value;
       }
     }
-    if (this.led) for (const name of plan.planned) row[name] = NaN;
+    if (this.led) for (const name of plan.planned) if (name in row) row[name] = NaN;
     this.trace.add(row);
     if (!plan.ends || this.frame !== plan.frames) return true;
     Object.assign(this, { playing: false, finished: true });
@@ -212,7 +212,7 @@ class Box {
       if (shown.some((value) => value !== null)) values[name] = shown;
     }
     for (const { along, ...table } of plan.tables) {
-      for (const [name, row] of Object.entries(between(table, last[along]))) if (Array.isArray(row)) values[name] = row.map(brief);
+      for (const [name, row] of Object.entries(between(table, last[along]))) if (Array.isArray(row)) values[name] = this.led && plan.planned.includes(name) ? [] : row.map(brief);
     }
     if (plan.whole) {
       for (const name of Object.keys(last)) values[name] = trace.column(name);
@@ -355,12 +355,13 @@ class Box {
     if (leaves && knob.leave) this.machine.call(knob.leave);
     else {
       const asked = value * knob.factor + knob.offset;
+      for (const [argument, wall] of Object.entries(knob.walls ?? {})) this.machine.set(knob.kernel, argument, BigInt(wall));
       this.machine.set(knob.kernel, knob.argument, knob.grid ? between(knob, asked).to : asked);
       this.machine.call(knob.kernel);
     }
     this.machine.call("begin_averages_anew");
     this.since = this.frame + 1;
-    this.led ||= knob.kernel === "lead";
+    this.led = true;
     this.knobs[name] = value;
     if (this.finished) Object.assign(this, { playing: true, finished: false }); // it had stopped only at the end of its ascent
     this.turned.push(`# in frame ${this.frame + 1}, at ${this.now * this.plan.time} ${this.told.stage.time.unit}: ${name} = ${value} ${unit}`);

@@ -1,0 +1,213 @@
+"""Wind and rolls of air that turns over, molecules released at the floor, and the adiabat: see `instruments.Flow`."""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.encounter import motion_at
+
+__all__ = ["ALOFT", "ROLLS", "WIND", "Flow", "across", "adiabat", "can_flow", "flowing"]
+
+WIND, ROLLS, ALOFT = 21, 22, 23
+"""Indices of the readings of the wind in ``Gauges.reading``: its speed, that of rolls, and the share aloft."""
+
+
+class Flow(NamedTuple):
+    """The data of the wind in the parts of the layers; all arrays are empty in a scene that does not show it.
+
+    ``sums : (3, part)`` are number and velocities along x and z of the molecules of each part in this frame; ``upright
+    : (part,)`` the squares of the velocities along z in a sample; ``total : (4,)`` the squares of the wind and of the
+    rolls, the number of samples in this frame, and the number of frames. ``high : (layer,)`` and ``wave : (wave,
+    column)`` are the shapes of rolls; ``column : (2, column)`` is scratch.
+
+    ``tagged : (molecule,)`` is 1 for the molecules that are followed from the frame ``release`` on: those lower than
+    ``low`` [length] and nearer than ``near`` to the middle, as a share of the width. ``wind : (2, part)`` is the wind
+    along x and z of the last frames [velocity], of which the newest counts by the share ``fresh``. ``lapse :
+    (density,)`` is how fast air cools that rises [energy/length], at the densities from 0 to ``dense``, and ``adiabat :
+    (layer,)`` the temperature of such air through the middle of the height [energy].
+    """
+
+    sums: Any
+    upright: Any
+    total: Any
+    high: Any
+    wave: Any
+    column: Any
+    tagged: Any
+    release: int
+    low: float
+    near: float
+    wind: Any
+    fresh: float
+    lapse: Any
+    dense: float
+    adiabat: Any
+
+
+def can_flow(modes: Modes) -> bool:
+    """Return whether the kernels of a set of modes measure the wind: those of one gas in a box at rest."""
+    return not (modes.rotation or modes.mixed or modes.piston or modes.phases)
+
+
+@kernel
+def _root(square):
+    """Return the root of a square, negative where noise has made it negative."""
+    return math.copysign(math.sqrt(abs(square)), square)
+
+
+@kernel
+def across(x, box):
+    """Return a coordinate along x over the side of the box, from 0 to 1."""
+    share = x / box.length_x
+    return share - math.floor(share) if box.inverse_x != 0.0 else share
+
+
+@functools.cache
+def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``begin``, ``note``, ``sample`` and ``end`` of one set of modes."""
+    if not can_flow(modes):
+        return _still()
+
+    @kernel
+    def begin(flow):
+        """Begin to measure."""
+        flow.sums[:] = 0.0
+        flow.total[:] = 0.0
+        flow.tagged[:] = 0
+        flow.wind[:] = 0.0
+
+    @kernel
+    def note(part, speed, flow):
+        """Add the velocity along z of a molecule of a part to the sums of a sample."""
+        if flow.upright.size > 0:
+            flow.upright[part] += speed * speed
+
+    @kernel
+    def sample(scratch, mass, molecules, flow):
+        """Add the wind of a sample, whose sums over the parts of the layers are in `scratch`: see `sample_layers`."""
+        columns = flow.wave.shape[1]
+        if columns == 0:
+            return
+        wind = 0.0
+        flow.column[:] = 0.0
+        for part in range(flow.upright.size):
+            number, along, up = scratch[0, part], scratch[2, part] / mass, scratch[4, part] / mass
+            flow.sums[0, part] += number
+            flow.sums[1, part] += along
+            flow.sums[2, part] += up
+            if number > 1.0:
+                wind += (along * along + up * up - 2.0 * scratch[5, part] / mass) / (number - 1.0)
+            size = 2.0 * flow.high[part // columns] / molecules
+            flow.column[0, part % columns] += size * up
+            flow.column[1, part % columns] += size * size * flow.upright[part]
+        rolls = 0.0
+        for k in range(flow.wave.shape[0]):
+            amplitude = alone = 0.0
+            for column in range(columns):
+                amplitude += flow.wave[k, column] * flow.column[0, column]
+                alone += flow.wave[k, column] ** 2 * flow.column[1, column]
+            rolls += amplitude * amplitude - alone
+        flow.total[0] += wind / molecules
+        flow.total[1] += rolls
+        flow.total[2] += 1.0
+        flow.upright[:] = 0.0
+
+    @kernel
+    def followed(gas, now, flow):
+        """Return the share of the followed molecules in the upper half, and choose them when it is time."""
+        height = gas.box.length_z
+        held = aloft = 0.0
+        for i in range(flow.tagged.size):
+            at = motion_at(i, now, gas, modes)
+            if flow.total[3] == flow.release and at.z < flow.low and abs(across(at.x, gas.box) - 0.5) < flow.near:
+                flow.tagged[i] = 1
+            if flow.tagged[i] == 1:
+                held += 1.0
+                aloft += 1.0 if at.z > 0.5 * height else 0.0
+        return aloft / held if held > 0.0 else math.nan
+
+    @kernel
+    def mean_along(layer, flow):
+        """Return the mean wind along x in the middle half of a layer."""
+        columns = flow.wave.shape[1]
+        first, last = columns // 4, max(columns - columns // 4, columns // 4 + 1)
+        mean = 0.0
+        for part in range(layer * columns + first, layer * columns + last):
+            mean += flow.sums[1, part] / flow.sums[0, part] if flow.sums[0, part] > 0.0 else math.nan
+        return mean / (last - first)
+
+    @kernel
+    def end(gas, now, gauges):
+        """Finish the wind of a frame, and read its speed, that of rolls, and the share of followed molecules aloft."""
+        flow = gauges.flow
+        if flow.upright.size == 0:
+            return
+        total, sums, reading = flow.total, flow.sums, gauges.reading
+        reading[ALOFT] = followed(gas, now, flow)
+        looks = max(total[2], 1.0)
+        fresh = max(flow.fresh, 1.0 / (total[3] + 1.0))
+        for part in range(flow.upright.size):
+            if sums[0, part] > 0.0:
+                for axis in range(2):
+                    flow.wind[axis, part] += fresh * (sums[1 + axis, part] / sums[0, part] - flow.wind[axis, part])
+        reading[WIND], reading[ROLLS] = _root(total[0] / looks), _root(total[1] / looks)
+        for layer in range(flow.high.size):
+            gauges.layers[4 * flow.high.size + layer] = mean_along(layer, flow)
+        sums[:] = 0.0
+        total[0] = total[1] = total[2] = 0.0
+        total[3] += 1.0
+
+    return begin, note, sample, end
+
+
+def _still() -> tuple[Callable[..., Any], ...]:
+    """Return the same kernels for a box in which no wind is measured."""
+
+    @kernel
+    def begin(flow):
+        """Do nothing."""
+
+    @kernel
+    def note(part, speed, flow):
+        """Do nothing."""
+
+    @kernel
+    def sample(scratch, mass, molecules, flow):
+        """Do nothing."""
+
+    @kernel
+    def end(gas, now, gauges):
+        """Do nothing."""
+
+    return begin, note, sample, end
+
+
+@kernel
+def _cooling(density, flow):
+    """Return how fast air of a density cools that rises [energy/length], from the table."""
+    last = flow.lapse.size - 1
+    place = min(max(density / flow.dense, 0.0), 1.0) * last
+    low = min(int(place), last - 1)
+    return flow.lapse[low] + (place - low) * (flow.lapse[low + 1] - flow.lapse[low])
+
+
+@kernel
+def adiabat(height, mean, flow):
+    """Write the temperature of air that has risen or sunk from the middle: `mean` holds densities, then kT of layers.
+
+    It is NaN as long as a layer has no density.
+    """
+    layers = flow.adiabat.size
+    thick = height / layers
+    for layer in range(layers):
+        flow.adiabat[layer] = 0.0
+        if layer > 0:
+            step = 0.5 * (_cooling(mean[layer], flow) + _cooling(mean[layer - 1], flow))
+            flow.adiabat[layer] = flow.adiabat[layer - 1] - step * thick
+    low, high = (layers - 1) // 2, layers // 2
+    off = 0.5 * (mean[layers + low] + mean[layers + high] - flow.adiabat[low] - flow.adiabat[high])
+    for layer in range(layers):
+        flow.adiabat[layer] += off
