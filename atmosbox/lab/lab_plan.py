@@ -50,6 +50,8 @@ _CROSSINGS = 4.0
 _WHOLE = 60.0
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
+_SLOWEST = 0.15
+"""Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
 _FIGURES = 4
 """Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
 _KNOBS = (
@@ -137,6 +139,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
         "profiles": profiles,
+        "wind": _wind(box) if _is_windy(box) else None,
         "fixed": _fixed(box),
         "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles),
         "planned": [_AT_REST] if _is_windy(box) else planned_alone(box),
@@ -274,6 +277,14 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
     if _is_windy(box):
         told.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, float(scale.temperature)))
     return told
+
+
+def _wind(box: Bench) -> dict[str, Any]:
+    """Return the cells in which the wind is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
+    flow: Any = box.gauges.flow
+    rows, columns = flow.high.size, flow.wave.shape[1]
+    speed = float(box.setup.scale.velocity)
+    return {"rows": rows, "columns": columns, "factor": speed, "least": _SLOWEST * speed}
 
 
 def _is_windy(box: Bench) -> bool:
