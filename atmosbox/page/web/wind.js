@@ -5,7 +5,7 @@ import { look, parse } from "./colour.js";
 import { figure } from "./figure.js";
 import { word } from "./words.js";
 
-const MOST = 16; // arrows along the box
+const MOST = 16, NEAR = 36; // arrows along the box, and the least number of pixels of the picture for each
 const LONGEST = 1.3, SHAFT = 0.05, HEAD = 0.15, TIP = 0.34, RIM = 0.045; // in distances between two arrows
 
 export class Wind {
@@ -31,7 +31,8 @@ export class Wind {
   // Draw the wind of equal cells; `values` are its components along x, then those along z. Arrows stand for the mean of
   // as many cells as make them few enough, and the longest is short if it is slower than `least`.
   blow({ rows, columns, values, least }, length) {
-    const step = Math.ceil(columns / MOST), arrows = [];
+    const most = Math.min(MOST, Math.max(2, this.words.parentElement.clientWidth / NEAR));
+    const step = Math.ceil(columns / most), arrows = [];
     for (let row = 0; row < rows; row += step) {
       for (let column = 0; column < columns; column += step) {
         const last = [Math.min(row + step, rows), Math.min(column + step, columns)], mean = [0, 0];
