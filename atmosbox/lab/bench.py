@@ -169,7 +169,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
     --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> bench(prepare("temperature", {"molecules": 20})).gauges.counts.size
-    36
+    58
     """
     with watched(prepared) as seen:
         setup = build(prepared)

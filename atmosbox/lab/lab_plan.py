@@ -48,8 +48,12 @@ STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "g
 
 _CROSSINGS = 4.0
 _WHOLE = 60.0
+_SOON = 30.0
+"""Least time that the usual pace takes for the run of air that turns over [s], so that rolls are soon seen."""
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
+_SLOWEST = 0.15
+"""Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
 _FIGURES = 4
 """Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
 _KNOBS = (
@@ -124,7 +128,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
         "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
-        "rate": _rate(setup),
+        "rate": _rate(setup, _SOON if _is_windy(box) else _WHOLE),
         "time": setup.scale.time / _SECONDS[setup.time_unit],
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
@@ -137,6 +141,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
         "profiles": profiles,
+        "wind": _wind(box) if _is_windy(box) else None,
         "fixed": _fixed(box),
         "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles),
         "planned": [_AT_REST] if _is_windy(box) else planned_alone(box),
@@ -152,14 +157,14 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     return plan, memory, box
 
 
-def _rate(setup: Setup) -> float:
+def _rate(setup: Setup, least: float) -> float:
     """Return the time of the box that passes in a second at the usual pace [reduced time].
 
-    A molecule crosses the box about four times in a second, but the whole run lasts at least a minute; an ascent lasts
-    exactly a minute.
+    A molecule crosses the box about four times in a second, but the whole run lasts at least ``least`` seconds; an
+    ascent lasts exactly as long.
     """
     parcel = setup.parcel
-    whole = setup.duration / _WHOLE
+    whole = setup.duration / least
     if setup.ends or not parcel.number:
         return whole
     kT = 2.0 * parcel.energy()[0] / (3.0 * parcel.number)
@@ -274,6 +279,14 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
     if _is_windy(box):
         told.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, float(scale.temperature)))
     return told
+
+
+def _wind(box: Bench) -> dict[str, Any]:
+    """Return the cells of the wind that is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
+    flow: Any = box.gauges.flow
+    rows, columns = flow.high.size, flow.wave.shape[1]
+    speed = float(box.setup.scale.velocity)
+    return {"rows": rows, "columns": columns, "factor": speed, "least": _SLOWEST * speed}
 
 
 def _is_windy(box: Bench) -> bool:

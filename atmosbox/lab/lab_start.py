@@ -116,10 +116,13 @@ def lab_starts(
     made = [Start(_key(own), first, _content(memory))]
     room = most - len(module_bytes(box.module, prepared.scene)) - len(gzip.compress(made[0].stored(), 9))
     presets: list[str] = []
-    missed, whole = 0, max(room, 1)
+    missed, whole, seeds_fit = 0, max(room, 1), True
     for title, values in _others(prepared, offered) if most else ():
         if missed == _MISSES:
             break
+        is_seed_alone = values.keys() == {"seed"}
+        if is_seed_alone and not seeds_fit:  # those of other seeds are as large
+            continue
         progress(1.0 - room / whole, "making other starts")
         try:
             plan, memory, its_box = lab_plan(
@@ -133,6 +136,7 @@ def lab_starts(
             continue
         size = len(gzip.compress(start.stored(), 9))
         if size > room:
+            seeds_fit &= not is_seed_alone
             missed += plan["seeded"]  # starts that the page places itself all have about the same size
             continue
         room -= size

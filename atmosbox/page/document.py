@@ -27,6 +27,7 @@ MODULES = (
     "walls.js",
     "labels.js",
     "trace.js",
+    "wind.js",
     "camera.js",
     "stage.js",
     "speeds.js",

@@ -292,6 +292,26 @@ def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkey
     assert shown.digest() == state_of(setup.parcel)
 
 
+def test_floor_and_ceiling_are_turned_apart_and_the_wind_is_drawn(lab):
+    settings = {"molecules": 500}
+    shown = lab("convection", settings)
+    setup = build(prepare("convection", settings, engine="exact"))
+    knobs, frame = {knob.name: knob for knob in setup.knobs}, 0
+    for until, name, value in ((10, "floor_temperature", 100.0), (20, "ceiling_temperature", -200.0), (30, "", 0.0)):
+        shown.ask(type="frames", value=until)
+        advance(setup, until, frame)
+        frame = until
+        if name:
+            shown.ask(type="set", name=name, value=value)
+            knobs[name].set(value)
+    assert shown.digest() == state_of(setup.parcel)
+    _, table = shown.table()
+    floor, ceiling = (table[f"wall_temperature[{wall}]"][[9, 10, 20]] for wall in ("z_low", "z_high"))
+    assert floor == pytest.approx([543.15, 373.15, 373.15])
+    assert ceiling == pytest.approx([28.15, 28.15, 73.15])
+    assert re.fullmatch(r"wind: longest arrow \d+ m/s", shown.page.locator(".wind").inner_text())
+
+
 def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab):
     shown = lab("lifting-dry", {"molecules": 200, "ascent": 40})
     shown.ask(type="frames", value=40)

@@ -39,6 +39,7 @@ class Lab {
     if (told.type === "stage") this.open(told);
     else if (told.type === "series") this.append(told);
     else if (told.type === "arrays") this.numbers?.replace(told.values);
+    else if (told.type === "wind") this.stage?.blow(told);
     else if (told.type === "state") this.state(told);
     else if (told.type === "controls") this.knobs(told.controls);
     else if (told.type === "note") {

@@ -223,6 +223,7 @@ class Box {
       Object.assign(trace, { sent: trace.rows.length, reset: false });
     }
     if (Object.keys(values).length) say({ type: "arrays", values });
+    if (plan.wind) say({ type: "wind", ...plan.wind, values: Array.from(machine.array("gauges.flow.wind"), (value) => value * plan.wind.factor) });
   }
 
   // ---------------------------------------------------------------- requests of the page

@@ -7,6 +7,7 @@ import { Walls } from "./walls.js";
 import { Labels } from "./labels.js";
 import { Molecules } from "./molecules.js";
 import { Trace } from "./trace.js";
+import { Wind } from "./wind.js";
 import { phrase, word } from "./words.js";
 
 const TABLE = Array.from({ length: 256 }, (_, share) => speedColour(share / 255));
@@ -34,6 +35,7 @@ export class Stage {
     this.walls = new Walls(record.box);
     this.trace = new Trace();
     this.scene.add(this.walls.object, this.molecules.object, this.trace.object);
+    this.wind = null;
     this.labels = new Labels(parent, record.box);
     this.camera = new Camera(this.canvas, record.box, () => { this.dirty = true; });
     this.sizes = Float32Array.from(record.kind, (kind, index) => record.size?.[index] ?? record.species[kind].drawn);
@@ -75,6 +77,7 @@ export class Stage {
     this.scene.background = new THREE.Color().setRGB(...background, THREE.SRGBColorSpace);
     this.molecules.light(background, theme() === "dark");
     this.walls.paint();
+    this.wind?.paint();
     this.tint();
   }
 
@@ -111,6 +114,17 @@ export class Stage {
   // Tint the walls by their temperatures; null for a wall whose temperature is not known.
   warm(temperatures) {
     this.walls.warm(temperatures);
+    this.dirty = true;
+  }
+
+  // Draw the wind as arrows.
+  blow(told) {
+    if (!this.length) return;
+    if (!this.wind) {
+      this.wind = new Wind(this.parent);
+      this.scene.add(this.wind.object);
+    }
+    this.wind.blow(told, this.length);
     this.dirty = true;
   }
 
