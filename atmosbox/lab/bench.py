@@ -320,7 +320,7 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
 def _wind(setup: Setup) -> Any:
     """Return the data of the wind; empty arrays in a scene that does not measure it, 0 if no kernel can."""
     flow, parcel = _of(setup, Flow), setup.parcel
-    if not can_flow(parcel._modes) or type(parcel) is not ParcelSet:  # type: ignore[attr-defined]
+    if not can_flow(parcel._modes):  # type: ignore[attr-defined]
         return 0
     rows, columns = (0, 0) if flow is None else flow._shape
     high, phases, lapse, dense = np.zeros(0), np.zeros((0, 0)), np.zeros(2), 1.0
