@@ -145,7 +145,7 @@ def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
 
 
 MOVES, SPINS, FALLS, LIQUID = STORES
-WALLS, PISTON, GRAVITY, SCHEME, BATH, ATTRACTION = GIVEN
+WALLS, PISTON, _, SCHEME, BATH, ATTRACTION = GIVEN
 SMALL = {"molecules": 200}
 DRY = {"molecules": 200, "ascent": 50}
 LIFTED = {"molecules": 300, "ascent": 20}
@@ -158,7 +158,7 @@ PARTS = [
     ("elastic-collisions", "", {}, {}, {MOVES}),
     ("diffusion", "", {"molecules": 300, "mass_ratio": 4}, {}, {MOVES}),
     ("atmosphere", "exact", SMALL, {}, {MOVES, FALLS, WALLS}),
-    ("atmosphere", "exact", SMALL, {"gravity": 5.0}, {MOVES, FALLS, WALLS, GRAVITY}),
+    ("atmosphere", "exact", SMALL, {"temperature": 400.0}, {MOVES, FALLS, WALLS}),
     ("atmosphere", "exact", SMALL | {"plane": True}, {}, {MOVES, FALLS, WALLS}),
     ("atmosphere", "exact", SMALL | {"start": "bottom", "floor": "isolated"}, {}, {MOVES, FALLS}),
     ("atmosphere", "stepped:delta=0.8", SMALL, {}, {MOVES, FALLS, WALLS}),
@@ -182,7 +182,7 @@ PARTS = [
     ("condensation", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
     ("condensation", "", {"molecules": 300, "drops": 2}, {}, {MOVES, SPINS, LIQUID, WALLS}),
     ("nuclei", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),
-    ("convection", "", {"molecules": 300, "duration": 60}, {"gravity": 5.0}, {MOVES, FALLS, WALLS, GRAVITY}),
+    ("convection", "", {"molecules": 300, "duration": 60}, {"floor_temperature": 400.0}, {MOVES, FALLS, WALLS}),
     ("convection", "dsmc", {"molecules": 2000, "rotation": True}, {}, {MOVES, SPINS, FALLS, WALLS}),
     ("evaporation", "", {"molecules": 300, "pool": 60}, {}, {MOVES, SPINS, LIQUID, PISTON}),
     ("lifting-dry", "", DRY, {}, {MOVES, SPINS, PISTON}),
