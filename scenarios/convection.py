@@ -301,7 +301,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     kind = "spheres of an ideal gas" if box.thin else f"discs {scale.length:.0f} m wide"
     depth = f"a slab {scale.length:.0f} m thick" if box.thin else f"a plane, for a slab {scale.length:.0f} m thick"
     onset = (
-        "none: theory of the onset is for an ideal gas, --engine dsmc"
+        "none: theory of the onset is for an ideal gas, on the engine dsmc"
         if math.isnan(fastest)
         else f"rolls grow by a factor e in {scale.time / fastest:.0f} s"
         if fastest > 0.0

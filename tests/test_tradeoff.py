@@ -339,7 +339,7 @@ def test_a_tradeoff_that_was_killed_goes_on_to_the_same_errors(tmp_path, runs):
     part = read(tmp_path / "x.part.nc")
     assert sorted(part.members.values.tolist()) == [1, 2]
     assert save(part, tmp_path / "part.svg").exists()
-    with pytest.raises(FileError, match="another tradeoff \\(--seed\\)"):
+    with pytest.raises(FileError, match="another tradeoff \\(seed\\)"):
         measure("elastic-collisions", ways=DISCS, out=tmp_path / "x.nc", seed=2)
     notes = []
     measure("elastic-collisions", ways=DISCS, out=tmp_path / "x.nc", note=notes.append)

@@ -110,8 +110,8 @@ def measure(
     title = f"Speed against accuracy: {getattr(module, 'title', scene)}"
     request = {
         # costs that were measured on another computer or with other sources of the engine cannot be compared
-        **{"version": __version__, "--seed": seed, "sources": source_digest(), "computer": platform.node()},
-        **{f"--set {name}": str(value) for name, value in (settings or {}).items()},
+        **{"version": __version__, "seed": seed, "sources": source_digest(), "computer": platform.node()},
+        **{f"setting {name}": str(value) for name, value in (settings or {}).items()},
         "ways": [way.label for way in ways],
     }
     about = {
