@@ -69,6 +69,7 @@ numpydoc_xref_param_type = False
 nitpick_ignore_regex = [
     (r"py:.*", r"(numpy|np|npt|xarray|xr|netCDF4|matplotlib|pathlib|types|typing|collections|os)(\..*)?"),
     (r"py:class", r"ArrayLike|NDArray|Figure|Path|Progress|RunDataset|Show"),
+    (r"py:class", r"tuple\[str"),  # of an annotation that is split at its bars
 ]
 
 html_theme = "furo"

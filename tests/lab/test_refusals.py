@@ -2,7 +2,7 @@
 
 import pytest
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import SettingError, on_command_line
 from atmosbox.lab import save_lab
 from atmosbox.simulation.preparation import prepare
 
@@ -19,5 +19,5 @@ from atmosbox.simulation.preparation import prepare
 def test_a_box_without_a_module_names_the_reason_and_the_way_out(tmp_path, scene, settings, engine, reason):
     with pytest.raises(SettingError, match=reason) as refused:
         save_lab(prepare(scene, settings, engine=engine), tmp_path / "lab.html")
-    assert f"atmosbox run {scene} --save-molecules, then atmosbox view" in str(refused.value)
+    assert f"atmosbox run {scene} --save-molecules, then atmosbox view" in refused.value.said(on_command_line)
     assert not list(tmp_path.iterdir())
