@@ -104,7 +104,7 @@ def lab_starts(
 
     Examples
     --------
-    >>> found, _ = lab_starts(prepare("elastic-collisions", {"molecules": 10}), 30_000)
+    >>> found, _ = lab_starts(prepare("elastic-collisions", {"molecules": 10}), 33_000)
     >>> [start.key for start in found[:2]]
     ['molecules=10, filling=15 %, seed=1', 'molecules=5, filling=15 %, seed=1']
     """
