@@ -29,7 +29,7 @@ __all__ = ["Worksheet", "worksheet"]
 _COMMAND = "`--"
 """A question that contains this needs commands."""
 _KNOBS = {
-    "ask": "Begin A anew, and turn a knob above its graphs while it plays. Write down first what each graph will do.",
+    "ask": "Begin A again, and turn a knob above its graphs while it plays. Write down first what each graph will do.",
     "answer": "",
     "lines": 4,
 }

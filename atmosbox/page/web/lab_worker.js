@@ -118,7 +118,7 @@ class Box {
       if (passed !== DONE) {
         this.playing = false;
         this.failed = true;
-        refuse(`The box cannot go on: ${WHY[passed]}. Begin anew.`);
+        refuse(`The box cannot go on: ${WHY[passed]}. Begin again.`);
         return;
       }
       this.now = until;
@@ -147,7 +147,7 @@ class Box {
     this.trace.add(row);
     if (!plan.ends || this.frame !== plan.frames) return true;
     Object.assign(this, { playing: false, finished: true });
-    say({ type: "note", level: "info", text: "The parcel has reached the end of its path: begin anew." });
+    say({ type: "note", level: "info", text: "The parcel has reached the end of its path: begin again." });
     return false;
   }
 
