@@ -21,6 +21,7 @@ rises, hardly rises while the drop evaporates, and rises again. Other defaults t
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -692,5 +693,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         headline="mean_virial_pressure",
     )
     if settings.heating:
-        return (_heating_panel("Heat first warms the drop, then evaporates it"), grown, energies)
+        heated = replace(energies, title="Heat separates the molecules")
+        return (_heating_panel("Heat first warms the drop, then evaporates it"), grown, heated)
     return (grown, energies, warm, pressure)
