@@ -75,7 +75,7 @@ def test_a_heated_drop_evaporates_before_it_becomes_much_warmer():
     capacity = found["vapor_heat_capacity"]
     assert capacity.agrees
     assert capacity.standard_error < 0.2 * capacity.theory
-    # measured with flat surfaces at 105 K: 6.1 kJ/mol; the surface of a drop shrinks, which makes it less
+    # 6.2 kJ/mol with flat surfaces at 111 K; the surface of a drop shrinks, which makes it less
     assert 4000.0 < found["latent_heat"].value < 6500.0
 
 
