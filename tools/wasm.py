@@ -27,8 +27,8 @@ import numba
 
 from atmosbox.engine.core.compiler import LlvmText
 from atmosbox.engine.core.state import Modes
-from atmosbox.lab.bench import bench
 from atmosbox.lab.kernels.kernel_table import kernels
+from atmosbox.lab.lab_box import lab_box
 from atmosbox.lab.wasm_module import BESIDE, FOLDER, SCENES, source_stamp, stamp_of
 from atmosbox.lab.work import arguments
 from atmosbox.simulation.preparation import prepare
@@ -116,7 +116,7 @@ def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]
     found = {}
     boxes = [(scene, SCENES[scene]) for scene in scenes]
     for scene, settings in [*boxes, *(each for each in BESIDE if each[0] in scenes)]:
-        box = bench(prepare(scene, settings, engine="exact"))
+        box = lab_box(prepare(scene, settings, engine="exact"))
         types = {name: tuple(map(numba.typeof, given)) for name, given in arguments(box).items()}
         found[box.module] = box.modes, box.attracts, types
     return found

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.file.variables import known
-from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.lab_box import LabBox, lab_box
 from atmosbox.lab.lab_stage import COLDER, lab_stage, plain, running_panels
 from atmosbox.lab.memory_image import BASE, Image, image
 from atmosbox.lab.moist_plan import (
@@ -25,7 +25,7 @@ from atmosbox.lab.moist_plan import (
 from atmosbox.lab.seeding import is_the_seed_all, without_molecules
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.lab.well_bench import drop_readings, has_bath
+from atmosbox.lab.well_lab_box import drop_readings, has_bath
 from atmosbox.lab.work import arguments
 from atmosbox.page import ROUND
 from atmosbox.page.control import knob_controls
@@ -64,7 +64,7 @@ _AT_REST = "layer_temperature_conduction"
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
-def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
+def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     """Return the plan of the page of a scene, the memory of its engine, and the box.
 
     Raises
@@ -85,7 +85,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         seen.append(lab_stage(prepared, setup, panels))
         return seen[-1][0]
 
-    box = bench(prepared, look)
+    box = lab_box(prepared, look)
     setup, (stage, fast) = box.setup, seen[0]
     is_seeded = is_the_seed_all(box)
     if is_seeded:
@@ -97,7 +97,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
     wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
     wanted |= {"sight.state", "sight.drops", "sight.many"}
-    wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _is_windy(box) else set()
+    wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _has_wind(box) else set()
     wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)
     begun = short_run(prepared)
@@ -128,7 +128,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
         "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
-        "rate": _rate(setup, _SOON if _is_windy(box) else _WHOLE),
+        "rate": _rate(setup, _SOON if _has_wind(box) else _WHOLE),
         "time": setup.scale.time / _SECONDS[setup.time_unit],
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
@@ -141,10 +141,10 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
         "profiles": profiles,
-        "wind": _wind(box) if _is_windy(box) else None,
+        "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),
         "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles),
-        "planned": [_AT_REST] if _is_windy(box) else planned_alone(box),
+        "planned": [_AT_REST] if _has_wind(box) else planned_alone(box),
         "knobs": numbers,
         "units": {},
         "command": _command(prepared),
@@ -202,7 +202,7 @@ def _seen(row: list[float | None]) -> list[float | None]:
     return [None if value is None else float(f"{value:.{_FIGURES}g}") for value in row]
 
 
-def _readings(box: Bench) -> list[tuple[str, int, float]]:
+def _readings(box: LabBox) -> list[tuple[str, int, float]]:
     """Return the readings that are shown: name, index, and factor to SI units or to the unit of the page."""
     setup = box.setup
     scale = setup.scale
@@ -221,7 +221,7 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
         ]
     if box.gauges.mixture.right.size:
         found += [("mixing_amplitude", Reading.AMPLITUDE, 1.0), ("mixing_entropy", Reading.ENTROPY, 1.0)]
-    if _is_windy(box):
+    if _has_wind(box):
         speed = scale.velocity
         found += [("wind_speed", Reading.WIND, speed), ("roll_speed", Reading.ROLLS, speed)]
         found.append(("tracer_share_aloft", Reading.ALOFT, 1.0))
@@ -251,7 +251,7 @@ def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[
     return {"presets": [], "challenges": met}
 
 
-def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
+def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
     scale = box.setup.scale
     bins, layers = box.gauges.counts.size, box.gauges.sums.shape[1]
@@ -262,7 +262,7 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
             ("layer_temperature", "layers", layers, layers, scale.temperature),
             ("layer_pressure", "layers", 2 * layers, layers, scale.pressure),
         ]
-    if _is_windy(box):
+    if _has_wind(box):
         found.append(("layer_wind", "layers", 3 * layers, layers, scale.velocity))
     across = box.gauges.mixture.counts.shape[1]
     if across:
@@ -276,12 +276,12 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
         for name, array, first, count, factor in found
         for end, part in (("", "mean"), ("_se", "error"))
     ]
-    if _is_windy(box):
+    if _has_wind(box):
         told.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, float(scale.temperature)))
     return told
 
 
-def _wind(box: Bench) -> dict[str, Any]:
+def _wind(box: LabBox) -> dict[str, Any]:
     """Return the cells of the wind that is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
     flow: Any = box.gauges.flow
     rows, columns = flow.high.size, flow.wave.shape[1]
@@ -289,13 +289,13 @@ def _wind(box: Bench) -> dict[str, Any]:
     return {"rows": rows, "columns": columns, "factor": speed, "least": _SLOWEST * speed}
 
 
-def _is_windy(box: Bench) -> bool:
+def _has_wind(box: LabBox) -> bool:
     """Return whether the wind is measured."""
     flow: Any = box.gauges.flow
     return bool(flow and flow.high.size)
 
 
-def _fixed(box: Bench) -> dict[str, Any]:
+def _fixed(box: LabBox) -> dict[str, Any]:
     """Return the coordinates that do not change: the middles of bins of speed, layers and bins of distance, in SI."""
     edges, layers = box.gauges.edges * box.setup.scale.velocity, box.gauges.sums.shape[1]
     found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
@@ -310,7 +310,7 @@ def _fixed(box: Bench) -> dict[str, Any]:
     return found | (fixed_axes(box) if box.modes.phases else {})
 
 
-def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
+def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
     setup = box.setup
     # a knob of a user's own scene is a function in Python, of which the page knows nothing

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.lab.bench import Bench
 from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.lab_box import LabBox
 from atmosbox.lab.lab_stage import plain
-from atmosbox.lab.moist_bench import bins_of, finer_at_kinks, theory_at
+from atmosbox.lab.moist_lab_box import bins_of, finer_at_kinks, theory_at
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared
@@ -51,7 +51,7 @@ _WAY = 401
 _WIDER = 1.25
 
 
-def water_readings(box: Bench) -> list[tuple[str, int, float]]:
+def water_readings(box: LabBox) -> list[tuple[str, int, float]]:
     """Return the readings of the water that are shown: see `lab_plan`."""
     scale, kinds = box.setup.scale, [type(each) for each in box.setup.instruments]
     rate, ratio, warm, force = scale.weight / scale.time, law.WATER_MASS_RATIO, scale.temperature, scale.pressure
@@ -97,7 +97,7 @@ def water_readings(box: Bench) -> list[tuple[str, int, float]]:
     return found
 
 
-def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
+def leaving_energies(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the histogram of the energies of molecules that leave the liquid: see `lab_plan._profiles`."""
     water: Any = box.gauges.water
     bins = water.width.size
@@ -105,14 +105,14 @@ def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
     return [("leaving_energy_probability_density", "gauges.water", 0, bins, factor)] if bins else []
 
 
-def fixed_axes(box: Bench) -> dict[str, Any]:
+def fixed_axes(box: LabBox) -> dict[str, Any]:
     """Return the middles of the bins of that histogram [J], and the radii of drops at which theory is drawn [m]."""
     leaving, nuclei = _instrument(box.setup, Leaving), _instrument(box.setup, Nuclei)
     found = {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
     return found if nuclei is None else found | {"radius": plain(nuclei._radius)}
 
 
-def planned_alone(box: Bench) -> list[str]:
+def planned_alone(box: LabBox) -> list[str]:
     """Return the curves of theory that hold only on the planned ascent: if it rains, those that depend on the loss."""
     parcel: Any = box.setup.parcel
     if not box.modes.phases or _instrument(box.setup, MoistLift) is None or not parcel._reservoir.rain > 0.0:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from atmosbox.engine.core.state import MOLECULE, aligned_records
-from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.laying_out import LAST, NUMBER
+from atmosbox.lab.lab_box import LabBox, lab_box
 from atmosbox.lab.memory_image import parts
 from atmosbox.lab.work import arguments
 from atmosbox.simulation.preparation import prepare
@@ -19,13 +19,13 @@ __all__ = ["is_the_seed_all", "without_molecules"]
 _PLACES = ("x", "y", "z", "vx", "vy", "vz")
 
 
-def without_molecules(box: Bench) -> Bench:
+def without_molecules(box: LabBox) -> LabBox:
     """Return a box in which everything that the kernel ``start`` writes is cleared.
 
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> empty = without_molecules(bench(prepare("temperature", {"molecules": 20})))
+    >>> empty = without_molecules(lab_box(prepare("temperature", {"molecules": 20})))
     >>> float(abs(empty.gas.molecules["x"]).max())
     0.0
     """
@@ -65,7 +65,7 @@ def without_molecules(box: Bench) -> Bench:
     return box._replace(gas=gas._replace(**blank), book=book)
 
 
-def _without_layers(box: Bench) -> Bench:
+def _without_layers(box: LabBox) -> LabBox:
     """Return a box of a column in which the data of its present layers are cleared."""
     shape, edge = box.layout.shape.copy(), box.layout.edge.copy()
     shape[[NUMBER + 2, LAST + 2]] = 0
@@ -74,18 +74,18 @@ def _without_layers(box: Bench) -> Bench:
     return box._replace(layout=layout, start=box.start and box.start._replace(layout=layout))
 
 
-def is_the_seed_all(box: Bench) -> bool:
+def is_the_seed_all(box: LabBox) -> bool:
     """Return whether a page can start a box with another seed: boxes of two seeds must differ in molecules only.
 
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> is_the_seed_all(bench(prepare("temperature", {"molecules": 20})))
+    >>> is_the_seed_all(lab_box(prepare("temperature", {"molecules": 20})))
     True
 
     The masses of discs are drawn at random, and more than the positions depends on them:
 
-    >>> is_the_seed_all(bench(prepare("elastic-collisions", {})))
+    >>> is_the_seed_all(lab_box(prepare("elastic-collisions", {})))
     False
     """
     prepared = box.prepared
@@ -94,11 +94,11 @@ def is_the_seed_all(box: Bench) -> bool:
     other = prepare(
         prepared.scene, prepared.settings.changed() | {"seed": int(prepared.settings.seed) + 1}, engine=prepared.engine
     )
-    second = bench(other)._replace(sight=box.sight)
+    second = lab_box(other)._replace(sight=box.sight)
     return second.seeded and _content(box) == _content(second)
 
 
-def _content(box: Bench) -> list[Any]:
+def _content(box: LabBox) -> list[Any]:
     """Return all arguments of the kernels of a box, without the limit by which a pile-up of events is detected."""
     empty = without_molecules(box)
     # the calendar is left out: it is empty, and its length depends on its address in memory

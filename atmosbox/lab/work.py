@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from typing import Any
 
-from atmosbox.lab.bench import Bench
 from atmosbox.lab.kernels.moist_passing import has_moist_knobs
 from atmosbox.lab.kernels.starting import can_start
+from atmosbox.lab.lab_box import LabBox
 
 __all__ = ["arguments"]
 
 
-def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
+def arguments(box: LabBox) -> dict[str, tuple[Any, ...]]:
     """Return the arguments of the kernels of a box by name.
 
     Examples
     --------
-    >>> from atmosbox.lab.bench import bench
+    >>> from atmosbox.lab.lab_box import lab_box
     >>> from atmosbox.lab.kernels.kernel_table import kernels
     >>> from atmosbox.simulation.preparation import prepare
-    >>> box = bench(prepare("temperature", {"molecules": 20}))
+    >>> box = lab_box(prepare("temperature", {"molecules": 20}))
     >>> set(arguments(box)) == set(kernels(box.modes, wells=box.attracts))
     True
     """
@@ -50,7 +50,7 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
     return found
 
 
-def _knobs(box: Bench) -> dict[str, tuple[Any, ...]]:
+def _knobs(box: LabBox) -> dict[str, tuple[Any, ...]]:
     """Return the arguments of the kernels that the knobs of a box with liquid call."""
     if not has_moist_knobs(box.modes):
         return {}

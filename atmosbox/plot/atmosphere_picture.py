@@ -130,12 +130,8 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
     dataset : xarray.Dataset
         The run, as `ascent_of` takes it.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -172,12 +168,8 @@ def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
     way : Ascent
         The whole path.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -221,8 +213,6 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
         Index of the last frame whose cloud and rain are drawn.
     stations : ndarray of int
         Indices of the frames in which the parcel is drawn with its temperature and, on a vertical path, its pressure.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Returns
     -------

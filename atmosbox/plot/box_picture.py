@@ -116,12 +116,8 @@ def box_picture(axes: Axes, dataset: xr.Dataset, held: Molecules, look: Theme) -
     ----------
     axes : matplotlib.axes.Axes
         The axes, whose position does not change.
-    dataset : xarray.Dataset
-        The run.
     held : Molecules
         Its molecules.
-    look : Theme
-        The theme: sizes of type, lines and markers.
     """
     return PlanarPicture(axes, dataset, look) if held.discs else BoxPicture(axes, held, look)
 
@@ -135,8 +131,6 @@ class BoxPicture:
         The axes, whose position does not change.
     held : Molecules
         The molecules of the run. Of more than 4000 only 4000 are drawn, at even steps of their index.
-    look : Theme
-        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -301,17 +295,7 @@ class BoxPicture:
 
 
 class PlanarPicture:
-    """The discs of a planar scene in their box, seen at right angles to their plane.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    dataset : xarray.Dataset
-        The run.
-    look : Theme
-        The theme: sizes of type, lines and markers.
-    """
+    """The discs of a planar scene in their box, seen at right angles to their plane."""
 
     unit = "m"
 
@@ -348,8 +332,6 @@ def instant(dataset: xr.Dataset, held: Molecules | None, frame: int) -> str:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
     held : Molecules or None
         Its molecules, if the file holds them.
     frame : int
@@ -371,15 +353,11 @@ def speed_bar(
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
-        The page.
     picture : BoxPicture or PlanarPicture
         The molecules.
     spot : tuple of float
         Left, bottom, width and height of the colour bar, as shares of the figure; the bar is vertical if it is higher
         than wide.
-    look : Theme
-        The theme: sizes of type, lines and markers.
     """
     axes = figure.add_axes(spot)
     upright = spot[3] * figure.get_figheight() > spot[2] * figure.get_figwidth()

@@ -247,8 +247,6 @@ def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tup
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
     panel : Panel
         The panel. A label or unit that it does not give is that of the variables of its first line.
 

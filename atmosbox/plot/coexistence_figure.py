@@ -55,8 +55,6 @@ def draw_coexistence(dataset: xr.Dataset, members: int, look: Theme) -> Figure:
         The sweep, for which `is_coexistence` is true.
     members : int
         Number of runs at each temperature.
-    look : Theme
-        The theme: sizes of type, lines and markers.
 
     Returns
     -------

@@ -30,8 +30,6 @@ def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
     name : str
         Name of a variable or coordinate; "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at the label
         ``z_low``.
@@ -142,8 +140,6 @@ def edges(dataset: xr.Dataset, panel: Panel, line: Line) -> NDArray[np.float64]:
     ----------
     dataset : xarray.Dataset
         The run; the attribute ``bounds`` of the coordinate of the bins names the variable that holds the bounds.
-    panel : Panel
-        The histogram.
     line : Line
         Its measured line.
 
@@ -181,10 +177,6 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
-    panel : Panel
-        A panel that has lines.
     axis : {"x", "y"}
         The axis.
 

@@ -98,11 +98,6 @@ with this version of atmosbox.
 def axis_names(dataset: xr.Dataset) -> tuple[str, str]:
     """Return the names of the two axes of a planar scene.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
     Returns
     -------
     tuple of str
@@ -166,16 +161,12 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
     panel : Panel
         A panel of the kind ``discs``; its ``x_unit`` is the unit of length, nm where it is empty.
     dataset : xarray.Dataset
         The run, with ``disc_position`` and ``disc_velocity`` (elapsed_time, molecule, axis),
         ``disc_diameter`` and ``disc_mass`` (molecule). The box reaches from 0 to ``box_length``, one number
         or one for each axis.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -222,12 +213,8 @@ def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
     found : Discs
         The discs.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -277,8 +264,6 @@ def trails(places: NDArray[np.float64], box: NDArray[np.float64], theme: Theme) 
         Positions of the discs in all frames up to the one that is drawn [length].
     box : ndarray, (2, 2)
         The lower and the upper corner of the box [length].
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Returns
     -------

@@ -33,16 +33,10 @@ def draw_line(
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    panel : Panel
-        The panel.
     line : Line
         One of its lines.
     values : Curve
         Its numbers; values that are not finite are not drawn.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
     index : int
         Number of lines of the same role before this one in the panel.
     **look
@@ -169,16 +163,8 @@ def draw_steps(
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    panel : Panel
-        The panel.
     line : Line
         One of its measured lines.
-    dataset : xarray.Dataset
-        The run.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
     index : int
         Number of measured lines before this one in the panel.
     colour, style
@@ -223,8 +209,6 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
     ----------
     role : str
         Role of the curve, one of `panels.ROLES`.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
     index : int
         Number of curves of this role before it.
 
@@ -261,14 +245,6 @@ def draw(
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    panel : Panel
-        What to draw.
-    dataset : xarray.Dataset
-        The run.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
         The lines to draw; by default all.
 
@@ -311,14 +287,6 @@ def draw_lines(
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    panel : Panel
-        What to draw.
-    dataset : xarray.Dataset
-        The run.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
         The lines to draw; by default all.
 
@@ -371,8 +339,6 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
     ----------
     axes : matplotlib.axes.Axes
         The axes, with all curves drawn.
-    panel : Panel
-        The panel.
     values : int
         Number of values of the longest curve.
 

@@ -67,10 +67,6 @@ def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> N
     ----------
     dataset : xarray.Dataset
         The run, with the field ``upward_wind``.
-    look : Theme
-        The theme: sizes of type, lines and markers.
-    drawing : matplotlib.figure.Figure
-        The page.
     top : float
         The distance [pt].
     """

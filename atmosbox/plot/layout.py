@@ -94,12 +94,8 @@ def put_numbers(measure: TextMeasure, readings: Sequence[Reading], look: Theme, 
 
     Parameters
     ----------
-    measure : TextMeasure
-        Measures the text of the page.
     readings : sequence of Reading
         The headline numbers. Without any, nothing is drawn and the height is 0.
-    look : Theme
-        The theme: sizes of type, lines and markers.
     below : float
         Distance from the upper end of the page to the cards [pt].
 
@@ -183,10 +179,6 @@ def page(
 
     Parameters
     ----------
-    panels : tuple of Panel
-        What to draw.
-    look : Theme
-        The theme: sizes of type, lines and markers.
     dataset : xarray.Dataset
         The run, whose variables give the labels of the axes.
     draw : callable
@@ -257,12 +249,6 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
 
     Parameters
     ----------
-    drawing : matplotlib.figure.Figure
-        The page.
-    panels : tuple of Panel
-        What to draw.
-    look : Theme
-        The theme: sizes of type, lines and markers.
     dataset : xarray.Dataset
         The run, whose variables give the labels of the axes.
     draw : callable
@@ -311,12 +297,8 @@ def put_footer(measure: TextMeasure, small: str, look: Theme) -> None:
 
     Parameters
     ----------
-    measure : TextMeasure
-        Measures the text of the page.
     small : str
         The text.
-    look : Theme
-        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -337,12 +319,8 @@ def put_heading(measure: TextMeasure, heading: str, look: Theme) -> float:
 
     Parameters
     ----------
-    measure : TextMeasure
-        Measures the text of the page.
     heading : str
         The text; an empty one takes no space.
-    look : Theme
-        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -366,12 +344,8 @@ def settle(measure: TextMeasure, graphs: list[Graph], look: Theme, top: float = 
 
     Parameters
     ----------
-    measure : TextMeasure
-        Measures the text of the page.
     graphs : list of Graph
         Its panels, from `put_panels`.
-    look : Theme
-        The theme: sizes of type and lines. If it allows the page to grow, the page becomes higher for much text.
     top : float
         Height above all panels that is already in use [pt].
 

@@ -106,8 +106,6 @@ def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
         The axes, with their pressures set.
     levels : dict of str to float
         Pressure of each level by its name [hPa]; levels outside the diagram are left out.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -159,8 +157,6 @@ def shade_energy(
     panel : Panel
         The panel: its first line of role ``data`` is the parcel, its first line of role ``environment`` is the
         environment.
-    dataset : xarray.Dataset
-        The run.
     marks : mapping of str to float
         Pressures of the levels LFC and EL [hPa].
     order : float
@@ -236,8 +232,6 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
     panel : Panel
         The panel; its ``marks`` are names of single numbers in the file.
 
@@ -287,16 +281,10 @@ def draw_skewt(
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
-        Where to draw.
     spot : matplotlib.gridspec.SubplotSpec
         The place of the panel in it.
     panel : Panel
         A panel of the kind ``skewt``.
-    dataset : xarray.Dataset
-        The run.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
         The lines to draw; by default all.
 
@@ -347,8 +335,6 @@ def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
-        Where to draw.
     spot : matplotlib.gridspec.SubplotSpec
         The place in it.
 
@@ -384,10 +370,6 @@ def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
     ----------
     skewed : metpy.plots.SkewT
         The diagram, with its curves.
-    axes : matplotlib.axes.Axes
-        Its axes.
-    theme : Theme
-        The theme: sizes of type, lines and markers.
 
     Examples
     --------

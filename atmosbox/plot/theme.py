@@ -124,11 +124,6 @@ def find(name: str) -> Theme:
 def style(theme: Theme) -> AbstractContextManager[None]:
     """Return a context in which matplotlib draws in a theme, whatever the user's own settings are.
 
-    Parameters
-    ----------
-    theme : Theme
-        The sizes.
-
     Returns
     -------
     context manager

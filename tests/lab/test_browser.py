@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from atmosbox.file.netcdf import read
-from atmosbox.lab import bench, save_lab
+from atmosbox.lab import lab_box, save_lab
 from atmosbox.lab.lab_plan import STATE
 from atmosbox.lab.lab_stage import lab_stage
 from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE
@@ -254,9 +254,9 @@ def test_the_page_has_the_same_bytes_as_python_with_another_seed_and_measures_th
 
 @pytest.mark.parametrize("frames", [90, pytest.param(138, marks=pytest.mark.validate)])
 def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_again(lab, monkeypatch, frames):
-    usual = bench.lists
+    usual = lab_box.lists
     # 23 words are enough at the start, but not where a drop forms: there the page gives them 46, or 92
-    monkeypatch.setattr(bench, "lists", lambda parcel: usual(parcel)._replace(stride=np.array([23]), longest=92))
+    monkeypatch.setattr(lab_box, "lists", lambda parcel: usual(parcel)._replace(stride=np.array([23]), longest=92))
     settings, turns = {"molecules": 100, "duration": "2.4 ns"}, ((50, 0.5), (70, 1.0), (frames, 1.0))
     shown = lab("attraction", settings)
     setup = build(prepare("attraction", settings))
@@ -278,7 +278,7 @@ def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_aga
 
 
 def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkeypatch):
-    monkeypatch.setattr(bench, "ROW", 7)  # words; twice as many are enough at the start, and not for long
+    monkeypatch.setattr(lab_box, "ROW", 7)  # words; twice as many are enough at the start, and not for long
     settings = {"molecules": 600, "water": 200, "seed": 4}
     shown = lab("nuclei", settings)
     shown.ask(type="frames", value=6)

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.exact.cells import choose_grid
 from atmosbox.engine.exact.rows import copies_of
-from atmosbox.lab.bench import bench
 from atmosbox.lab.kernels.laying_out import LAST, NUMBER, choose_cells, write_cells
+from atmosbox.lab.lab_box import lab_box
 from atmosbox.simulation.preparation import prepare
 
 
 @pytest.fixture(scope="module")
 def box():
-    return bench(prepare("lifting-dry", {"molecules": 300}))
+    return lab_box(prepare("lifting-dry", {"molecules": 300}))
 
 
 @functools.cache

@@ -7,7 +7,7 @@ import pytest
 
 from atmosbox.engine.core.state import Modes
 from atmosbox.errors import EngineError, on_command_line
-from atmosbox.lab.bench import bench
+from atmosbox.lab.lab_box import lab_box
 from atmosbox.lab.wasm_module import BESIDE, FOLDER, SCENES, module_bytes, module_name, source_stamp, stamp_of
 from atmosbox.simulation.preparation import prepare
 
@@ -62,7 +62,9 @@ def test_a_module_imports_memory_and_nothing_else():
 
 def test_the_modules_are_small_and_there_is_one_for_every_scene_that_has_a_lab():
     assert 0 < sum(path.stat().st_size for path in MODULES) <= 480_000
-    needed = {bench(prepare(scene, settings, engine="exact")).module for scene, settings in [*SCENES.items(), *BESIDE]}
+    needed = {
+        lab_box(prepare(scene, settings, engine="exact")).module for scene, settings in [*SCENES.items(), *BESIDE]
+    }
     assert needed == {path.name.removesuffix(".wasm.gz") for path in MODULES}
 
 

@@ -26,10 +26,10 @@ from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
 from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
-from atmosbox.lab.moist_bench import hygrometer, liquid_sight, moisture
+from atmosbox.lab.moist_lab_box import hygrometer, liquid_sight, moisture
 from atmosbox.lab.start_recipe import no_start, start_of, watched
 from atmosbox.lab.wasm_module import elsewhere, module_name
-from atmosbox.lab.well_bench import crowd, lists, well_gas
+from atmosbox.lab.well_lab_box import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
 from atmosbox.scene.instruments import (
     MOMENTS,
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.setup import Setup
     from atmosbox.scene.units import Scale
 
-__all__ = ["Bench", "bench", "refuse"]
+__all__ = ["LabBox", "lab_box", "refuse"]
 
 _CORNERS = 4
 _SPARE = 1.5
@@ -72,12 +72,12 @@ _FRESH = 0.2
 """Share by which the newest frame counts in the wind that is drawn."""
 
 
-class Bench(NamedTuple):
+class LabBox(NamedTuple):
     """A box at its start, as the arrays and settings of a page.
 
     ``layers`` is the average of the profiles by height, one quantity after the other, and ``speeds`` the average of the
     shares of molecules by speed; they are empty in a scene that does not show them. If molecules attract each other,
-    ``gas`` and ``layout`` are those of `well_bench`, and ``crowd`` holds the data of the drops; otherwise it is 0.
+    ``gas`` and ``layout`` are those of `well_lab_box`, and ``crowd`` holds the data of the drops; otherwise it is 0.
     ``start`` says how molecules are placed with another seed, if ``seeded``.
     """
 
@@ -150,7 +150,7 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
     return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel._modes) and flow._shape == parts
 
 
-def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> Bench:
+def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> LabBox:
     """Return the box of a scene for a page.
 
     Parameters
@@ -168,7 +168,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> bench(prepare("temperature", {"molecules": 20})).gauges.counts.size
+    >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.counts.size
     58
     """
     with watched(prepared) as seen:
@@ -182,7 +182,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
     begun = start or no_start(setup)
     if begun is not None and parcel._modes.gravity and not attracts:
         begun = begun._replace(layout=layout)
-    return Bench(
+    return LabBox(
         prepared,
         setup,
         well_gas(parcel) if attracts else _gas(parcel, layout),
