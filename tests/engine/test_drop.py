@@ -188,15 +188,6 @@ def is_lawful(parcel, waters, drops):
         np.testing.assert_allclose(flying(parcel)[0], drops.nucleus_mass + held * drops.substance.mass, rtol=1e-12)
 
 
-def state(parcel):
-    """Return everything that can be read off a parcel, as bytes."""
-    now, ledger, drops = parcel.snapshot(), parcel._reservoir, parcel.drops()
-    arrays = [now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial]
-    arrays += [ledger.energy, ledger.count, ledger.spectrum, ledger.absent[: ledger.top[0]], parcel._tallies.random]
-    numbers = (parcel.time, parcel.ceiling, parcel.work, parcel.contacts, parcel.number, parcel.liquid, parcel.merged)
-    return [array.tobytes() for array in (*arrays, *drops, *flying(parcel))], numbers, parcel.wall_hits.tolist()
-
-
 # ------------------------------------------------------------------ their balances, event by event
 
 
@@ -455,32 +446,6 @@ def test_drops_that_boil_leave_their_nuclei():
 
 
 # ------------------------------------------------------------------ runs watched and divided
-
-
-@many_events
-@by_name
-def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name, monkeypatch):
-    few = {"air": 4, "vapour": 3}
-    whole = box(name, **few)
-    epoch = whole._epoch_length
-    end = 1.3 * epoch
-    whole.advance(end)
-    random = np.random.default_rng(6)
-    cuts = [
-        np.linspace(0.0, end, 8)[1:],
-        [epoch, end],
-        [*np.sort(random.uniform(0.0, end, 200)), end],
-        [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
-    ]
-    assert whole._walls.epoch[0] == epoch
-    assert whole.condensed > 10
-    for times, chunk in zip(cuts, (200_000, 50, 17, 1024), strict=True):
-        monkeypatch.setattr(drop_parcelset, "_CHUNK", chunk)
-        parcel = box(name, **few)
-        for time in times:
-            parcel.advance(time)
-            parcel.drops(), parcel.ledger(), parcel.energy(), parcel.merged, repr(parcel)
-        assert state(parcel) == state(whole)
 
 
 # ------------------------------------------------------------------ readings

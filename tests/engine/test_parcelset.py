@@ -20,7 +20,6 @@ from atmosbox.engine import (
     StalledError,
 )
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.engine.exact import parcelset
 from atmosbox.engine.exact.reference import Reference
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -96,14 +95,6 @@ def box(name, number=40, **changes):
 
 NAMES = ["equal", "piston", "points", "mixed", "periodic", "periodic rotation", "everything"]
 by_name = pytest.mark.parametrize("name", NAMES)
-
-
-def state(parcel):
-    """Return everything that can be read off a parcel, as bytes."""
-    now = parcel.snapshot()
-    arrays = (now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial)
-    numbers = (parcel.time, parcel.ceiling, parcel.piston_velocity, parcel.work, parcel.contacts)
-    return [array.tobytes() for array in arrays], numbers, parcel.wall_hits.tolist()
 
 
 def least_gap(parcel):
@@ -235,49 +226,6 @@ def test_a_crowd_in_one_cell_finds_room():
 # ------------------------------------------------------------------ runs watched and divided
 
 
-@by_name
-def test_looking_changes_nothing(name):
-    watched, alone = ParcelSet(**box(name)), ParcelSet(**box(name))
-    for time in np.linspace(0.0, 9.0, 31)[1:]:
-        watched.advance(time)
-        watched.snapshot(), watched.energy(), watched.ledger(), watched.open_density, repr(watched)
-        watched.snapshot().position[:] = math.nan
-        watched.wall_heat[:] = math.nan
-        watched.length[:] = math.nan
-    alone.advance(9.0)
-    assert watched.contacts > 10 or name == "points"
-    assert state(watched) == state(alone)
-
-
-@many_events
-@by_name
-def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
-    few = {"number": 8}
-    whole = ParcelSet(**box(name, **few))
-    epoch = whole._epoch_length
-    end = 3.3 * epoch
-    whole.advance(end)
-    random = np.random.default_rng(6)
-    cuts = [
-        np.linspace(0.0, end, 8)[1:],
-        [epoch, 2.0 * epoch, 3.0 * epoch, end],
-        [*np.sort(random.uniform(0.0, end, 300)), end],
-        [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
-    ]
-    assert whole._walls.epoch[0] == 3.0 * epoch
-    assert whole.events["wall_hits"] + whole.contacts > 1000
-    for times in cuts:
-        parcel = ParcelSet(**box(name, **few))
-        for time in times:
-            parcel.advance(time)
-            assert parcel.time == time
-        assert state(parcel) == state(whole)
-    if name == "everything":
-        other = ParcelSet(**box(name, seed=78, **few))
-        other.advance(end)
-        assert state(other) != state(whole)
-
-
 @many_events
 def test_time_reads_what_was_asked_for_even_while_nothing_happens():
     # slow molecules between warm walls: their first event is many epochs away
@@ -294,33 +242,6 @@ def test_the_driver_is_asked_at_the_multiples_of_its_interval():
     for time in (0.1, 0.75, 2.0, 2.0, 4.4):
         parcel.advance(time)
     assert driver.asked == pytest.approx([0.0, 0.75, 1.5, 2.25, 3.0, 3.75])
-
-
-class Stop(Exception):
-    """What a watch may raise, as Ctrl-C does."""
-
-
-@many_events
-def test_a_run_that_is_interrupted_can_be_looked_at_and_go_on(monkeypatch):
-    def interrupt(time):
-        seen.append(time)
-        raise Stop
-
-    monkeypatch.setattr(parcelset, "_CHUNK", 5000)
-    seen, end = [], 100.0
-    interrupted, whole = ParcelSet(**box("equal", number=120)), ParcelSet(**box("equal", number=120))
-    with pytest.raises(Stop):
-        interrupted.advance(end, watch=interrupt)
-    assert 0.0 < interrupted.time <= seen[0] < end
-    position = interrupted.snapshot().position
-    assert (position > 0.5 - 1e-9).all()
-    assert (position < interrupted.length - 0.5 + 1e-9).all()
-    assert least_gap(interrupted) > -1e-9
-    assert interrupted.ledger() < 1e-11
-    interrupted.advance(end)
-    whole.advance(end, watch=seen.append)
-    assert len(seen) > 2
-    assert state(interrupted) == state(whole)
 
 
 # ------------------------------------------------------------------ small and special boxes
