@@ -134,8 +134,9 @@ def test_a_knob_of_a_page_sets_the_temperature_that_it_shows():
 
 
 def test_a_page_draws_the_random_numbers_of_its_seed():
-    images = [lab_plan(prepare("temperature", {"molecules": 50, "seed": seed}))[1] for seed in (3, 3, 4)]
-    assert images[0] == images[1] != images[2]
+    plans = [lab_plan(prepare("temperature", {"molecules": 50, "seed": seed})) for seed in (3, 3, 4)]
+    assert [plan["seed"] for plan, *_ in plans] == [3, 3, 4]
+    assert plans[0][1] == plans[1][1] != plans[2][1]
 
 
 # Error bars and profiles

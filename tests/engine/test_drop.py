@@ -286,22 +286,6 @@ def test_drops_that_grow_at_walls_and_in_corners_stay_inside(by_single_events):
 
 @own_kernels
 @many_events
-def test_drops_that_grow_under_a_falling_piston_stay_below_it(by_single_events):
-    drops = nuclei(0, ((4.0, 4.0, 7.4), (4.0, 2.0, 1.0)), water(1e-3), nuclei=200.0, sticking=1.0)
-    parcel = damp(drops, 5, 20, walls=(*TURNING[:4], Specular(), Piston(-0.05)), seed=4)
-    grown = []
-
-    def check(time):
-        grown.append(parcel.condensed)
-        is_lawful(parcel, 20, drops)
-
-    parcel.advance(80.0, watch=check)
-    assert max(grown) > 10
-    assert parcel.work > 0.0
-
-
-@own_kernels
-@many_events
 def test_a_piston_that_would_crush_a_drop_is_stopped():
     drops = nuclei(10, ((4.0, 4.0, 2.0),), water(1e-3))
     parcel = damp(drops, 5, 10, walls=(*TURNING[:4], Specular(), Piston(-0.2)), seed=4)
@@ -419,19 +403,6 @@ def test_a_box_may_hold_hardly_any_water_and_air(
     for time in (0.3, 3.0, 30.0, 300.0):
         parcel.advance(time)
         is_lawful(parcel, number + vapour, drops)
-
-
-@many_events
-def test_a_bare_nucleus_catches_and_loses():
-    drops = nuclei(0, CENTRES[:1], water(0.05, binding_energy=2.0), nuclei=0.0, sticking=1.0)
-    parcel = damp(drops, 1, 2, seed=3)
-    seen = set()
-    for k in range(1, 2000):
-        parcel.advance(0.5 * k)
-        seen.add(parcel.liquid)
-        assert parcel.drops()[2].tolist() == [parcel.liquid]
-    assert seen == {0, 1, 2}
-    is_lawful(parcel, 2, drops)
 
 
 @many_events

@@ -181,14 +181,13 @@ def test_energy_and_water_are_kept_at_every_event(engine, name, by_single_events
             return
         assert engine == "dsmc" or np.sum(now - seen[-1]) == 1
         seen.append(now)
-        assert parcel.vapour + parcel.liquid + parcel.rained == 40
+        is_lawful(parcel, 40)
         assert parcel.number == 20 + parcel.vapour
         kinetic, rotational, potential = parcel.energy()
         inside = kinetic + rotational + parcel.liquid_energy + PHI * parcel.vapour + parcel._reservoir.energy[1]
         assert potential == 0.0
         assert inside - parcel.wall_heat.sum() - parcel.work == pytest.approx(start, rel=1e-10)
         assert parcel.internal_energy() == pytest.approx(kinetic + rotational, rel=1e-9)
-        assert parcel.ledger() < 1e-10
 
     while (seen[-1] < 8).any():
         assert parcel.time < 1000.0
@@ -200,7 +199,6 @@ def test_energy_and_water_are_kept_at_every_event(engine, name, by_single_events
         met = parcel.condensed + parcel._reservoir.count[AIR_MET]
         assert parcel.wall_hits[4] >= met if engine == "exact" else parcel.wall_hits[4] == met
         assert parcel.wall_impulse[4] > 0.0
-    is_lawful(parcel, 40)
 
 
 @in_each_box

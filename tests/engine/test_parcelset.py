@@ -202,13 +202,6 @@ def test_a_piston_that_has_given_way_is_not_met_where_it_would_have_been():
     assert parcel.snapshot().position[:, 2].max() < 8.0
 
 
-def test_points_pass_through_each_other():
-    parcel = ParcelSet(**box("points"))
-    parcel.advance(10.0)
-    assert (parcel.contacts, parcel.virial.sum()) == (0, 0.0)
-    assert parcel.wall_hits.sum() > 100
-
-
 @many_events
 def test_a_crowd_in_one_cell_finds_room():
     random = np.random.default_rng(2)
@@ -264,29 +257,6 @@ def test_a_box_may_hold_hardly_anything(name, number):
     assert (parcel.events["wall_hits"] > 0) == (number > 0 and name != "periodic")
     assert math.isfinite(parcel.degrees_of_freedom)
     assert repr(parcel).startswith(f"<ParcelSet: {number} molecules")
-
-
-@pytest.mark.validate  # a single molecule needs further kernels
-def test_points_may_move_in_a_periodic_box():
-    point = ParcelSet([[1, 2, 2]], [[1, 0.5, 0.25]], length=(4, 4, 4), walls=TURNING, diameter=0.0)
-    point.advance(6.0)
-    assert point.snapshot().position.tolist() == [[3.0, 1.0, 3.5]]
-
-
-def test_a_plane_gas_stays_in_its_plane():
-    sides = (5.5, 2.0, 6.0)
-    made = box("equal", number=12, length=sides, position=lattice(12, sides, 1.0), planar=True)
-    made["velocity"][:, 1] = 0.0
-    made["position"][:, 1] = 1.0
-    made["position"][:, [0, 2]] = np.stack(np.meshgrid([0.7, 2.0, 3.4, 4.8], [0.8, 2.5, 5.0]), axis=-1).reshape(-1, 2)
-    parcel = ParcelSet(**made)
-    parcel.advance(30.0)
-    assert parcel.contacts > 50
-    assert (parcel.snapshot().position[:, 1] == 1.0).all()
-    assert (parcel.snapshot().velocity[:, 1] == 0.0).all()
-    assert parcel.wall_hits[2] == parcel.wall_hits[3] == 0
-    assert parcel.volume == pytest.approx(5.5 * 6.0)
-    assert parcel.degrees_of_freedom == 2.0
 
 
 def test_a_plane_gas_may_lie_on_the_border_of_a_periodic_box():
@@ -349,22 +319,6 @@ def test_only_a_piston_can_be_moved_and_at_a_finite_velocity():
         with pytest.raises(RefusedError, match="velocity of the piston = "):
             parcel.set_piston_velocity(velocity)
     assert parcel.piston_velocity == 0.0
-
-
-def test_a_piston_may_be_moved_by_hand():
-    parcel = ParcelSet(**box("piston", driver=None))
-    parcel.advance(1.0)
-    parcel.set_piston_velocity(-0.2)
-    parcel.advance(3.0)
-    assert parcel.ceiling == pytest.approx(5.6)
-    parcel.set_piston_velocity(3.0)
-    parcel.advance(6.0)
-    parcel.set_piston_velocity(-1.0)
-    parcel.advance(7.0)
-    assert parcel.ceiling == pytest.approx(13.6)
-    assert parcel.ledger() < 1e-12
-    assert least_gap(parcel) > -1e-9
-    assert parcel.wall_hits[5] > 0
 
 
 @many_events

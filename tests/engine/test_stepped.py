@@ -471,8 +471,3 @@ def test_a_piston_is_stopped_before_it_crushes():
     assert 1.02 <= box.ceiling < 1.1
     assert box.escaped() == 0
     assert box.ledger() < 1e-10
-
-
-def test_a_periodic_box_in_which_molecules_meet_their_own_images_is_refused():
-    with pytest.raises(RefusedError, match=r"make it longer than 2\.25"):
-        parcel([[1, 1, 1]], [[1, 0, 0]], length=(2.0, 4, 4), walls=(P,) * 6)
