@@ -79,36 +79,14 @@ def test_a_change_of_gravity_is_in_the_ledger_and_moves_nobody(engine):
     assert np.array_equal(before.velocity, after.velocity)
     assert gas.gravity_work == pytest.approx(1.5 * potential, rel=1e-12)
     gas.advance(60.0)
+    gas.set_gravity(0.0)
+    assert gas.energy()[2] == 0.0
+    gas.advance(70.0)
     gas.set_gravity(0.05)
     gas.advance(80.0)
     assert gas.ledger() < 1e-12
     assert not gas.escaped()
     assert gas.gravity == 0.05
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_gravity_can_be_switched_off_and_on(engine):
-    gas = box(engine, walls=COLUMN, gravity=0.2)
-    gas.advance(10.0)
-    gas.set_gravity(0.0)
-    speeds = np.sum(gas.snapshot().velocity ** 2)
-    assert gas.energy()[2] == 0.0
-    gas.advance(20.0)
-    gas.set_gravity(0.2)
-    gas.advance(30.0)
-    assert speeds > 0.0
-    assert gas.ledger() < 1e-12
-    assert not gas.escaped()
-
-
-def test_a_stronger_gravity_makes_the_column_lower():
-    gas = box(ParcelSet, walls=COLUMN, gravity=0.05, number=100)
-    gas.advance(100.0)
-    high = np.mean([gas.snapshot().position[:, 2].mean() for t in range(101, 141) if gas.advance(float(t)) is None])
-    gas.set_gravity(1.0)
-    gas.advance(240.0)
-    low = np.mean([gas.snapshot().position[:, 2].mean() for t in range(241, 281) if gas.advance(float(t)) is None])
-    assert low < 0.5 * high
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -158,45 +136,6 @@ def test_without_collisions_molecules_meet_walls_alone(engine):
     assert box(engine).ideal is (engine is DsmcParcel)
 
 
-def test_an_impossible_change_is_refused_and_changes_nothing():
-    gas = box(ParcelSet, walls=COLUMN, gravity=0.1)
-    gas.advance(1.0)
-    for change, words in [
-        (lambda: gas.set_wall_kT(0.0), "not positive"),
-        (lambda: gas.set_wall_kT(math.nan), "finite"),
-        (lambda: gas.set_wall_kT(1.0, wall=5), "z_high is no heat bath"),
-        (lambda: gas.set_wall_kT(1.0, wall=9), "9 is no heat bath"),
-        (lambda: gas.set_gravity(-1.0), "from 0 to "),
-        (lambda: gas.set_gravity(math.inf), "finite"),
-    ]:
-        with pytest.raises(RefusedError, match=words):
-            change()
-    assert gas.gravity == 0.1
-    assert gas.wall_kT()[4] == 1.0
-
-
-def test_a_box_that_cannot_have_it_says_so():
-    smooth = box(ParcelSet, walls=(Specular(),) * 5 + (Piston(),))
-    with pytest.raises(RefusedError, match="make one a HeatBath"):
-        smooth.set_wall_kT(2.0)
-    endless = box(ParcelSet, walls=(Periodic(),) * 6)
-    with pytest.raises(RefusedError, match="fall for ever"):
-        endless.set_gravity(1.0)
-    with pytest.raises(RefusedError, match="no gravity"):
-        damp(Mist(WATER, number=1, kT=1.0)).set_gravity(1.0)
-
-
-@pytest.mark.parametrize("engine", ENGINES[1:])
-def test_a_step_that_would_become_too_long_is_refused(engine):
-    gas = box(engine, walls=COLUMN, gravity=0.1)
-    with pytest.raises(RefusedError, match="too hot for the step"):
-        gas.set_wall_kT(100.0)
-    with pytest.raises(RefusedError, match="within a step"):
-        gas.set_gravity(1e6)
-    gas.advance(1.0)
-    assert gas.gravity == 0.1
-
-
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_smooth_wall_becomes_a_heat_bath_and_is_smooth_again(engine):
     gas = box(engine, number=50, walls=(Specular(),) * 6)
@@ -213,23 +152,39 @@ def test_a_smooth_wall_becomes_a_heat_bath_and_is_smooth_again(engine):
     assert gas.ledger() < 1e-12
 
 
-def test_a_wall_that_cannot_become_another_is_refused_and_stays():
-    gas = box(ParcelSet, number=2, walls=(Specular(),) * 5 + (Piston(),))
-    laws = gas._walls.law.tolist()
-    for wall, law, said in [
-        (5, HeatBath(1.0), "wall z_high is neither smooth nor a heat bath: choose one that is"),
-        (6, HeatBath(1.0), "wall 6 is neither"),
-        (0, Periodic(), "wall x_low = Periodic.*: give Specular or HeatBath"),
-        (0, HeatBath(Ramp(1.0, 2.0, start=0.0, end=1.0)), "changes with time: give one temperature"),
-        (0, HeatBath(-1.0), "kT of wall x_low"),
-    ]:
-        with pytest.raises(RefusedError, match=said):
-            gas.set_wall(wall, law)
-    assert gas._walls.law.tolist() == laws
-
-
-def test_only_a_pool_is_covered_and_by_no_more_than_all_of_it():
-    with pytest.raises(RefusedError, match="only a pool can be covered"):
-        damp(Mist(WATER, number=2, kT=1.0)).set_open_pool(0.5)
-    with pytest.raises(RefusedError, match=r"open share of the pool = 1\.5"):
-        damp(Pool(WATER, number=2, kT=1.0)).set_open_pool(1.5)
+def test_a_change_that_a_box_cannot_have_is_refused_in_a_sentence_and_changes_nothing():
+    column = box(ParcelSet, walls=COLUMN, gravity=0.1)
+    under_piston = box(ParcelSet, number=2, walls=(Specular(),) * 5 + (Piston(),))
+    endless = box(ParcelSet, number=2, walls=(Periodic(),) * 6)
+    mist, pool = damp(Mist(WATER, number=2, kT=1.0)), damp(Pool(WATER, number=2, kT=1.0))
+    cases = [
+        (column.set_wall_kT, (0.0,), "not positive"),
+        (column.set_wall_kT, (math.nan,), "finite"),
+        (column.set_wall_kT, (1.0, 5), "z_high is no heat bath"),
+        (column.set_wall_kT, (1.0, 9), "9 is no heat bath"),
+        (column.set_gravity, (-1.0,), "from 0 to "),
+        (column.set_gravity, (math.inf,), "finite"),
+        (under_piston.set_wall_kT, (2.0,), "make one a HeatBath"),
+        (endless.set_gravity, (1.0,), "fall for ever"),
+        (mist.set_gravity, (1.0,), "no gravity"),
+        (mist.set_open_pool, (0.5,), "only a pool can be covered"),
+        (pool.set_open_pool, (1.5,), r"open share of the pool = 1\.5"),
+        (
+            under_piston.set_wall,
+            (5, HeatBath(1.0)),
+            "wall z_high is neither smooth nor a heat bath: choose",
+        ),
+        (under_piston.set_wall, (6, HeatBath(1.0)), "wall 6 is neither"),
+        (under_piston.set_wall, (0, Periodic()), "wall x_low = Periodic.*: give Specular or HeatBath"),
+        (under_piston.set_wall, (0, HeatBath(Ramp(1.0, 2.0, start=0.0, end=1.0))), "changes with time: give one"),
+        (under_piston.set_wall, (0, HeatBath(-1.0)), "kT of wall x_low"),
+    ]
+    for engine in ENGINES[1:]:
+        gas = box(engine, walls=COLUMN, gravity=0.1)
+        cases += [(gas.set_wall_kT, (100.0,), "too hot for the step"), (gas.set_gravity, (1e6,), "within a step")]
+    for change, given, words in cases:
+        parcel = change.__self__
+        before = parcel.gravity, parcel._walls.law.tolist(), parcel.wall_kT().tolist()
+        with pytest.raises(RefusedError, match=words):
+            change(*given)
+        assert repr((parcel.gravity, parcel._walls.law.tolist(), parcel.wall_kT().tolist())) == repr(before)

@@ -188,15 +188,6 @@ def is_lawful(parcel, waters, drops):
         np.testing.assert_allclose(flying(parcel)[0], drops.nucleus_mass + held * drops.substance.mass, rtol=1e-12)
 
 
-def state(parcel):
-    """Return everything that can be read off a parcel, as bytes."""
-    now, ledger, drops = parcel.snapshot(), parcel._reservoir, parcel.drops()
-    arrays = [now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial]
-    arrays += [ledger.energy, ledger.count, ledger.spectrum, ledger.absent[: ledger.top[0]], parcel._tallies.random]
-    numbers = (parcel.time, parcel.ceiling, parcel.work, parcel.contacts, parcel.number, parcel.liquid, parcel.merged)
-    return [array.tobytes() for array in (*arrays, *drops, *flying(parcel))], numbers, parcel.wall_hits.tolist()
-
-
 # ------------------------------------------------------------------ their balances, event by event
 
 
@@ -291,22 +282,6 @@ def test_drops_that_grow_at_walls_and_in_corners_stay_inside(by_single_events):
 
     parcel.advance(60.0, watch=check)
     assert len(seen) > 20
-
-
-@own_kernels
-@many_events
-def test_drops_that_grow_under_a_falling_piston_stay_below_it(by_single_events):
-    drops = nuclei(0, ((4.0, 4.0, 7.4), (4.0, 2.0, 1.0)), water(1e-3), nuclei=200.0, sticking=1.0)
-    parcel = damp(drops, 5, 20, walls=(*TURNING[:4], Specular(), Piston(-0.05)), seed=4)
-    grown = []
-
-    def check(time):
-        grown.append(parcel.condensed)
-        is_lawful(parcel, 20, drops)
-
-    parcel.advance(80.0, watch=check)
-    assert max(grown) > 10
-    assert parcel.work > 0.0
 
 
 @own_kernels
@@ -431,19 +406,6 @@ def test_a_box_may_hold_hardly_any_water_and_air(
 
 
 @many_events
-def test_a_bare_nucleus_catches_and_loses():
-    drops = nuclei(0, CENTRES[:1], water(0.05, binding_energy=2.0), nuclei=0.0, sticking=1.0)
-    parcel = damp(drops, 1, 2, seed=3)
-    seen = set()
-    for k in range(1, 2000):
-        parcel.advance(0.5 * k)
-        seen.add(parcel.liquid)
-        assert parcel.drops()[2].tolist() == [parcel.liquid]
-    assert seen == {0, 1, 2}
-    is_lawful(parcel, 2, drops)
-
-
-@many_events
 def test_drops_that_boil_leave_their_nuclei():
     drops = nuclei(20, substance=water(1e4))
     parcel = damp(drops, 20, 0, walls=WARM)
@@ -455,32 +417,6 @@ def test_drops_that_boil_leave_their_nuclei():
 
 
 # ------------------------------------------------------------------ runs watched and divided
-
-
-@many_events
-@by_name
-def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name, monkeypatch):
-    few = {"air": 4, "vapour": 3}
-    whole = box(name, **few)
-    epoch = whole._epoch_length
-    end = 1.3 * epoch
-    whole.advance(end)
-    random = np.random.default_rng(6)
-    cuts = [
-        np.linspace(0.0, end, 8)[1:],
-        [epoch, end],
-        [*np.sort(random.uniform(0.0, end, 200)), end],
-        [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
-    ]
-    assert whole._walls.epoch[0] == epoch
-    assert whole.condensed > 10
-    for times, chunk in zip(cuts, (200_000, 50, 17, 1024), strict=True):
-        monkeypatch.setattr(drop_parcelset, "_CHUNK", chunk)
-        parcel = box(name, **few)
-        for time in times:
-            parcel.advance(time)
-            parcel.drops(), parcel.ledger(), parcel.energy(), parcel.merged, repr(parcel)
-        assert state(parcel) == state(whole)
 
 
 # ------------------------------------------------------------------ readings

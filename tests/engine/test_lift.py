@@ -1,7 +1,6 @@
 """A piston that follows a pressure is moved by compiled code as its driver would move it from Python."""
 
 import copy
-import math
 
 import numpy as np
 import pytest
@@ -91,25 +90,6 @@ def test_a_driver_in_python_lifts_the_box_alike_until_rounding_has_grown(name):
     assert ours.contacts == theirs.contacts > 10
     assert ours.ceiling == pytest.approx(theirs.ceiling, rel=1e-7)
     assert ours.piston_velocity == pytest.approx(theirs.piston_velocity, rel=1e-4)
-
-
-@pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
-@pytest.mark.parametrize("name", ["dry", "mist", pytest.param("pool", marks=pytest.mark.validate)])
-def test_a_lift_is_the_same_however_it_is_cut(name):
-    start = pressure_of(name)
-    whole, cut = (BOXES[name](follow(start, 0.2 * start)) for _ in range(2))
-    end = 450.0
-    whole.advance(end)
-    interval = cut._driver.interval
-    for time in sorted([*np.random.default_rng(1).uniform(0.0, end, 60), *(interval * k for k in (7, 8, 300))]):
-        cut.advance(time)
-    cut.advance(end)
-    assert whole.ceiling > 1.5**2 * 12.0  # the cells have been laid out anew
-    assert cut.snapshot().position.tobytes() == whole.snapshot().position.tobytes()
-    assert (cut.ceiling, cut.piston_velocity) == (whole.ceiling, whole.piston_velocity)
-    assert whole._turns[0] == math.floor(end / interval)
-    assert whole.ledger() < 1e-11
-    assert whole.escaped() == 0
 
 
 @pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")

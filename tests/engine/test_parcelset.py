@@ -20,7 +20,6 @@ from atmosbox.engine import (
     StalledError,
 )
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.engine.exact import parcelset
 from atmosbox.engine.exact.reference import Reference
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -96,14 +95,6 @@ def box(name, number=40, **changes):
 
 NAMES = ["equal", "piston", "points", "mixed", "periodic", "periodic rotation", "everything"]
 by_name = pytest.mark.parametrize("name", NAMES)
-
-
-def state(parcel):
-    """Return everything that can be read off a parcel, as bytes."""
-    now = parcel.snapshot()
-    arrays = (now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial)
-    numbers = (parcel.time, parcel.ceiling, parcel.piston_velocity, parcel.work, parcel.contacts)
-    return [array.tobytes() for array in arrays], numbers, parcel.wall_hits.tolist()
 
 
 def least_gap(parcel):
@@ -211,13 +202,6 @@ def test_a_piston_that_has_given_way_is_not_met_where_it_would_have_been():
     assert parcel.snapshot().position[:, 2].max() < 8.0
 
 
-def test_points_pass_through_each_other():
-    parcel = ParcelSet(**box("points"))
-    parcel.advance(10.0)
-    assert (parcel.contacts, parcel.virial.sum()) == (0, 0.0)
-    assert parcel.wall_hits.sum() > 100
-
-
 @many_events
 def test_a_crowd_in_one_cell_finds_room():
     random = np.random.default_rng(2)
@@ -233,49 +217,6 @@ def test_a_crowd_in_one_cell_finds_room():
 
 
 # ------------------------------------------------------------------ runs watched and divided
-
-
-@by_name
-def test_looking_changes_nothing(name):
-    watched, alone = ParcelSet(**box(name)), ParcelSet(**box(name))
-    for time in np.linspace(0.0, 9.0, 31)[1:]:
-        watched.advance(time)
-        watched.snapshot(), watched.energy(), watched.ledger(), watched.open_density, repr(watched)
-        watched.snapshot().position[:] = math.nan
-        watched.wall_heat[:] = math.nan
-        watched.length[:] = math.nan
-    alone.advance(9.0)
-    assert watched.contacts > 10 or name == "points"
-    assert state(watched) == state(alone)
-
-
-@many_events
-@by_name
-def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
-    few = {"number": 8}
-    whole = ParcelSet(**box(name, **few))
-    epoch = whole._epoch_length
-    end = 3.3 * epoch
-    whole.advance(end)
-    random = np.random.default_rng(6)
-    cuts = [
-        np.linspace(0.0, end, 8)[1:],
-        [epoch, 2.0 * epoch, 3.0 * epoch, end],
-        [*np.sort(random.uniform(0.0, end, 300)), end],
-        [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
-    ]
-    assert whole._walls.epoch[0] == 3.0 * epoch
-    assert whole.events["wall_hits"] + whole.contacts > 1000
-    for times in cuts:
-        parcel = ParcelSet(**box(name, **few))
-        for time in times:
-            parcel.advance(time)
-            assert parcel.time == time
-        assert state(parcel) == state(whole)
-    if name == "everything":
-        other = ParcelSet(**box(name, seed=78, **few))
-        other.advance(end)
-        assert state(other) != state(whole)
 
 
 @many_events
@@ -294,33 +235,6 @@ def test_the_driver_is_asked_at_the_multiples_of_its_interval():
     for time in (0.1, 0.75, 2.0, 2.0, 4.4):
         parcel.advance(time)
     assert driver.asked == pytest.approx([0.0, 0.75, 1.5, 2.25, 3.0, 3.75])
-
-
-class Stop(Exception):
-    """What a watch may raise, as Ctrl-C does."""
-
-
-@many_events
-def test_a_run_that_is_interrupted_can_be_looked_at_and_go_on(monkeypatch):
-    def interrupt(time):
-        seen.append(time)
-        raise Stop
-
-    monkeypatch.setattr(parcelset, "_CHUNK", 5000)
-    seen, end = [], 100.0
-    interrupted, whole = ParcelSet(**box("equal", number=120)), ParcelSet(**box("equal", number=120))
-    with pytest.raises(Stop):
-        interrupted.advance(end, watch=interrupt)
-    assert 0.0 < interrupted.time <= seen[0] < end
-    position = interrupted.snapshot().position
-    assert (position > 0.5 - 1e-9).all()
-    assert (position < interrupted.length - 0.5 + 1e-9).all()
-    assert least_gap(interrupted) > -1e-9
-    assert interrupted.ledger() < 1e-11
-    interrupted.advance(end)
-    whole.advance(end, watch=seen.append)
-    assert len(seen) > 2
-    assert state(interrupted) == state(whole)
 
 
 # ------------------------------------------------------------------ small and special boxes
@@ -343,29 +257,6 @@ def test_a_box_may_hold_hardly_anything(name, number):
     assert (parcel.events["wall_hits"] > 0) == (number > 0 and name != "periodic")
     assert math.isfinite(parcel.degrees_of_freedom)
     assert repr(parcel).startswith(f"<ParcelSet: {number} molecules")
-
-
-@pytest.mark.validate  # a single molecule needs further kernels
-def test_points_may_move_in_a_periodic_box():
-    point = ParcelSet([[1, 2, 2]], [[1, 0.5, 0.25]], length=(4, 4, 4), walls=TURNING, diameter=0.0)
-    point.advance(6.0)
-    assert point.snapshot().position.tolist() == [[3.0, 1.0, 3.5]]
-
-
-def test_a_plane_gas_stays_in_its_plane():
-    sides = (5.5, 2.0, 6.0)
-    made = box("equal", number=12, length=sides, position=lattice(12, sides, 1.0), planar=True)
-    made["velocity"][:, 1] = 0.0
-    made["position"][:, 1] = 1.0
-    made["position"][:, [0, 2]] = np.stack(np.meshgrid([0.7, 2.0, 3.4, 4.8], [0.8, 2.5, 5.0]), axis=-1).reshape(-1, 2)
-    parcel = ParcelSet(**made)
-    parcel.advance(30.0)
-    assert parcel.contacts > 50
-    assert (parcel.snapshot().position[:, 1] == 1.0).all()
-    assert (parcel.snapshot().velocity[:, 1] == 0.0).all()
-    assert parcel.wall_hits[2] == parcel.wall_hits[3] == 0
-    assert parcel.volume == pytest.approx(5.5 * 6.0)
-    assert parcel.degrees_of_freedom == 2.0
 
 
 def test_a_plane_gas_may_lie_on_the_border_of_a_periodic_box():
@@ -428,22 +319,6 @@ def test_only_a_piston_can_be_moved_and_at_a_finite_velocity():
         with pytest.raises(RefusedError, match="velocity of the piston = "):
             parcel.set_piston_velocity(velocity)
     assert parcel.piston_velocity == 0.0
-
-
-def test_a_piston_may_be_moved_by_hand():
-    parcel = ParcelSet(**box("piston", driver=None))
-    parcel.advance(1.0)
-    parcel.set_piston_velocity(-0.2)
-    parcel.advance(3.0)
-    assert parcel.ceiling == pytest.approx(5.6)
-    parcel.set_piston_velocity(3.0)
-    parcel.advance(6.0)
-    parcel.set_piston_velocity(-1.0)
-    parcel.advance(7.0)
-    assert parcel.ceiling == pytest.approx(13.6)
-    assert parcel.ledger() < 1e-12
-    assert least_gap(parcel) > -1e-9
-    assert parcel.wall_hits[5] > 0
 
 
 @many_events

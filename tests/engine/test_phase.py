@@ -149,38 +149,6 @@ def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypa
 
 
 @many_events
-@by_name
-def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
-    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
-    parcel = box(name, air=40, vapour=10)
-    seen = [0]
-
-    def check(time):
-        if parcel.evaporated == seen[-1]:
-            return
-        seen.append(parcel.evaporated)
-        present = np.isfinite(parcel._fields["clock"])
-        m = parcel._fields[present]
-        newest = int(np.argmax(m["clock"]))
-        t = m["clock"][newest]
-        place = np.stack([m[u] + (t - m["clock"]) * m["v" + u] for u in "xyz"], axis=1)
-        away = place - place[newest]
-        length = np.array([*parcel.length[:2], parcel.length[2]])
-        away -= np.where(parcel.periodic, length * np.rint(away / length), 0.0)
-        gap = np.sqrt(np.sum(away**2, axis=1)) - 0.5 * (parcel.diameter + parcel.diameter[newest])
-        gap[newest] = 0.0
-        assert gap.min() > -1e-9
-        if "pool" in name:
-            # it is on the floor and moves up
-            assert place[newest, 2] == 0.5 * DIAMETER
-            assert m["vz"][newest] > 0.0
-
-    while seen[-1] < 20:
-        parcel.advance(parcel.time + 1.0, watch=check)
-        assert parcel.time < 200.0
-
-
-@many_events
 @pytest.mark.parametrize("name", ["mist", "pool", pytest.param("periodic", marks=pytest.mark.validate)])
 def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
     monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
+from atmosbox.engine.core.random import RUN, START, gamma, gaussian_pair, new_state, uniform
 
 NUMBER = 40_000
 WORD = 1 << 64
@@ -78,11 +78,11 @@ def test_not_even_the_outermost_word_makes_a_zero_or_a_one():
         assert number == pytest.approx(word / WORD, abs=1e-15)
 
 
-def test_the_same_seed_gives_the_same_numbers_and_another_seed_others():
-    first, again, other = random_state(1), random_state(1), random_state(2)
-    numbers = [uniform(first) for _ in range(5)]
-    assert numbers == [uniform(again) for _ in range(5)]
-    assert numbers != [uniform(other) for _ in range(5)]
+def test_the_same_seed_gives_the_same_numbers_and_each_other_seed_and_use_others():
+    cases = [(seed, use) for seed in (0, 1, 2, 1 + WORD, 1 + 2 * WORD, 10**60) for use in (RUN, START)]
+    first, again = ([int(new_state(*case)[0]) for case in cases] for _ in range(2))
+    assert first == again
+    assert len(set(first)) == len(cases)
 
 
 def test_gaussian_pairs_are_normal_and_independent(normals):

@@ -3,10 +3,8 @@
 Thermodynamics of the square well are in tests/physics/test_square_well.py.
 """
 
-import copy
 import itertools
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -21,7 +19,6 @@ from atmosbox.engine import (
     SquareWell,
     random_positions,
 )  # fmt: skip
-from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.engine.wells.attracting_reference import AttractingReference
 
 ROUND = (Periodic(),) * 6
@@ -153,23 +150,6 @@ def test_the_heat_of_the_bath_is_in_the_ledger_and_it_keeps_its_temperature():
     # independent to a good part after one mean time of the bath: 4 standard errors, twice widened for correlation
     error = math.sqrt(1.5 * 200) * math.sqrt(2.0 / 200)
     assert np.mean(kinetic) == pytest.approx(1.5 * 200, abs=4.0 * error)
-
-
-def test_a_run_is_the_same_however_it_is_cut_copied_or_saved():
-    whole, cut = gas(150, 0.3, 0.9, bath=0.2), gas(150, 0.3, 0.9, bath=0.2)
-    whole.advance(12.0)
-    for until in (0.3, 4.0, 4.0, 7.7):
-        cut.advance(until)
-    text, memory = cut.state()
-    copied, pickled = copy.deepcopy(cut), pickle.loads(pickle.dumps(cut))
-    restored = gas(150, 0.3, 0.9, bath=0.2)
-    restored.restore(SavedState(text, memory))
-    for box in (cut, copied, pickled, restored):
-        box.advance(12.0)
-        for one, other in zip(whole.snapshot(), box.snapshot(), strict=True):
-            assert np.array_equal(one, other)
-        assert np.array_equal(whole.pairs(), box.pairs())
-        assert whole.bath_heat == box.bath_heat
 
 
 def test_clocks_stay_small_in_a_long_run_without_a_change_of_what_happens():

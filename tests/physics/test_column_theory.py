@@ -67,13 +67,19 @@ DENSE = {
 }
 
 
-def test_a_dense_column_is_in_hydrostatic_balance():
-    heights = np.linspace(0.5, 11.5, 12)
-    density = column_at_rest.hydrostatic_column(heights, **DENSE)
+PLANE = DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "dimensions": 2}
+of_spheres_and_discs = pytest.mark.parametrize("column", [DENSE, PLANE], ids=["spheres", "discs"])
+
+
+@of_spheres_and_discs
+def test_a_dense_column_is_in_hydrostatic_balance(column):
+    heights, planar = np.linspace(0.5, 11.5, 12), "dimensions" in column
+    density = column_at_rest.hydrostatic_column(heights, **column)
+    filled = theory.packing_fraction_discs if planar else theory.packing_fraction
+    stiff = theory.inverse_compressibility_discs if planar else theory.inverse_compressibility
 
     def balance(_height, n):
-        stiffness = theory.inverse_compressibility(theory.packing_fraction(n, 1.0))
-        return -n * 1.5 * 0.2 / (1.2 * stiffness)
+        return -n * 1.5 * column["gravity"] / (1.2 * stiff(filled(n, 1.0)))
 
     fall = integrate.solve_ivp(
         balance, (0.5, 11.5), density[:1], t_eval=heights, method="DOP853", rtol=1e-12, atol=1e-14
@@ -82,13 +88,26 @@ def test_a_dense_column_is_in_hydrostatic_balance():
     assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
 
 
-def test_a_dense_column_holds_its_molecules_and_carries_their_weight():
+@of_spheres_and_discs
+def test_a_dense_column_holds_its_molecules_and_carries_their_weight(column):
+    held, planar = column["molecules_per_area"], "dimensions" in column
     nodes, weights = leggauss(64)
-    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **DENSE)
-    assert 5.5 * weights @ inside == pytest.approx(3.0, rel=1e-11)
-    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **DENSE)
-    floor, ceiling = theory.gas_pressure(ends, 1.2, 1.0)
-    assert floor - ceiling == pytest.approx(3.0 * 1.5 * 0.2, rel=1e-12)
+    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **column)
+    assert 5.5 * weights @ inside == pytest.approx(held, rel=1e-11)
+    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **column)
+    floor, ceiling = (theory.gas_pressure_discs if planar else theory.gas_pressure)(ends, 1.2, 1.0)
+    assert floor - ceiling == pytest.approx(held * 1.5 * column["gravity"], rel=1e-12)
+    edges = np.array([0.0, 0.4, 2.0, 5.0, 9.0, 12.0])
+    assert theory.hydrostatic_layers(edges, **column) @ np.diff(edges) == pytest.approx(held, rel=1e-12)
+
+
+@of_spheres_and_discs
+def test_a_column_of_tiny_molecules_is_barometric(column):
+    heights = np.linspace(0.0, 12.0, 25)
+    tiny = column_at_rest.hydrostatic_column(heights, **(column | {"diameter": 1e-7}))
+    points = column_at_rest.hydrostatic_column(heights, **(column | {"diameter": 0.0, "dimensions": 3}))
+    assert np.count_nonzero(points == 0.0) == 2  # below the bottom and above the top
+    assert np.allclose(tiny, points, rtol=1e-11, atol=0.0)
 
 
 def test_layers_of_a_column_hold_what_their_profile_says():
@@ -134,14 +153,6 @@ def test_the_mean_height_of_a_column_is_that_of_its_balance_of_forces(deep, dime
     assert thick[0] * 0.5 * deep == pytest.approx(thin, rel=1e-10)
 
 
-def test_a_column_of_tiny_spheres_is_barometric():
-    heights = np.linspace(0.0, 12.0, 25)
-    tiny = column_at_rest.hydrostatic_column(heights, **(DENSE | {"diameter": 1e-4}))
-    points = column_at_rest.hydrostatic_column(heights, **(DENSE | {"diameter": 0.0}))
-    assert np.count_nonzero(points == 0.0) == 2  # below the bottom and above the top
-    assert np.allclose(tiny, points, rtol=1e-11, atol=0.0)
-
-
 @pytest.mark.parametrize("gravity", [0.0, 1e-12])
 def test_a_dense_column_without_gravity_is_uniform(gravity):
     density = column_at_rest.hydrostatic_column([0.5, 6.0, 11.5], **(DENSE | {"gravity": gravity}))
@@ -159,9 +170,6 @@ def test_a_very_deep_column_ends_in_vacuum_without_a_warning():
     deep = DENSE | {"gravity": 0.1, "top": 1e5}
     density = column_at_rest.hydrostatic_column([0.5, 20.0, 9e4], **deep)
     assert density[0] > density[1] > density[2] == 0.0
-
-
-PLANE = DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "dimensions": 2}
 
 
 def test_the_free_energy_of_discs_is_the_integral_of_their_pressure():
@@ -201,43 +209,6 @@ def test_the_mean_free_path_of_thin_discs_is_one_over_the_strip_that_they_sweep(
     density = 1e-6
     path = theory.mean_speed(1.3, 0.7, dimensions=2) / theory.collision_rate_discs(density, 0.9, 1.3, 0.7)
     assert path == pytest.approx(1.0 / (2.0 * np.sqrt(2.0) * density * 0.9), rel=1e-5)
-
-
-def test_a_plane_column_is_in_hydrostatic_balance():
-    heights = np.linspace(0.5, 11.5, 12)
-    density = column_at_rest.hydrostatic_column(heights, **PLANE)
-
-    def balance(_height, n):
-        covered = theory.packing_fraction_discs(n, 1.0)
-        return -n * 1.5 * 0.3 / (1.2 * theory.inverse_compressibility_discs(covered))
-
-    fall = integrate.solve_ivp(
-        balance, (0.5, 11.5), density[:1], t_eval=heights, method="DOP853", rtol=1e-12, atol=1e-14
-    )
-    assert density[0] > 2.0 * density[-1]
-    assert theory.packing_fraction_discs(density[0], 1.0) > 0.4
-    assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
-
-
-def test_a_plane_column_holds_its_molecules_and_carries_their_weight():
-    nodes, weights = leggauss(64)
-    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **PLANE)
-    assert 5.5 * weights @ inside == pytest.approx(4.0, rel=1e-11)
-    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **PLANE)
-    floor, ceiling = theory.gas_pressure_discs(ends, 1.2, 1.0)
-    assert floor - ceiling == pytest.approx(4.0 * 1.5 * 0.3, rel=1e-12)
-    edges = np.array([0.0, 0.4, 2.0, 5.0, 9.0, 12.0])
-    layers = theory.hydrostatic_layers(edges, **PLANE)
-    assert layers @ np.diff(edges) == pytest.approx(4.0, rel=1e-12)
-
-
-def test_a_plane_column_of_tiny_discs_is_barometric():
-    heights = np.linspace(0.0, 12.0, 25)
-    tiny = column_at_rest.hydrostatic_column(heights, **(PLANE | {"diameter": 1e-7}))
-    points = column_at_rest.hydrostatic_column(
-        heights, **(DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "diameter": 0.0})
-    )
-    assert np.allclose(tiny, points, rtol=1e-11, atol=0.0)
 
 
 def test_a_column_that_would_freeze_is_refused():

@@ -12,31 +12,15 @@ from atmosbox.engine.core.measure import momentum
 S, P = Specular(), Periodic()
 
 
-def energy_error(gas, contacts):
-    """Return the greatest relative change of energy at twenty times, and the number of events."""
+@pytest.mark.parametrize("contacts", [3e5, pytest.param(1e7, marks=pytest.mark.validate)])
+def test_energy_is_kept_to_rounding_with_gravity_and_walls(gas, contacts):
     box = gas(400, (11.0, 11.0, 14.0), gravity=0.1, seed=1)
     before = sum(box.energy())
-    worst = 0.0
     for share in np.linspace(0.05, 1.0, 20):
         while box.contacts < share * contacts:
             box.advance(box.time + 0.002 * contacts / 400.0)
-        worst = max(worst, abs(sum(box.energy()) / before - 1.0))
-    assert box.contacts >= contacts
-    assert box.wall_hits[:6].min() > 100
-    return worst, sum(box.events.values())
-
-
-def test_energy_is_kept_to_rounding_with_gravity_and_walls(gas):
-    error, events = energy_error(gas, 3e5)
-    assert error <= 1e-12
-    assert error <= 1e-12 * np.sqrt(events)
-
-
-@pytest.mark.validate
-def test_energy_is_kept_to_rounding_over_ten_million_contacts(gas):
-    error, events = energy_error(gas, 1e7)
-    assert error <= 1e-12
-    assert error <= 1e-12 * np.sqrt(events)
+        assert abs(sum(box.energy()) / before - 1.0) <= 1e-12
+    assert box.wall_hits.min() > 100
 
 
 @pytest.mark.parametrize("gravity", [0.0, 0.05])
@@ -93,19 +77,6 @@ def test_nothing_overlaps_or_escapes_at_any_time(gas, out_of_place, name):
     assert box.contacts > 10 * box.number
 
 
-def test_nothing_overlaps_or_escapes_below_a_piston_that_pumps(gas, out_of_place):
-    box = gas(191, (8.0, 8.0, 14.0), walls=(S,) * 5 + (Piston(),), gravity=0.1, seed=4)
-    for stroke in range(40):
-        box.set_piston_velocity((-0.6, 0.7, -1.3, 1.2)[stroke % 4])
-        for _ in range(3):
-            box.advance(box.time + 0.77)
-            outside, overlap = out_of_place(box)
-            assert outside <= 1e-9
-            assert overlap <= 1e-9
-    assert box.wall_hits[5] > 100
-    assert box.contacts > 2000
-
-
 def test_momentum_stays_in_a_periodic_box(gas):
     drift = np.array([0.3, -0.2, 0.1])
     still = {"number": 300, "length": (10.0, 10.0, 10.0), "walls": (P,) * 6, "seed": 5}
@@ -116,19 +87,6 @@ def test_momentum_stays_in_a_periodic_box(gas):
         box.advance(box.time + 25.0)
         assert np.abs(momentum(box, box.snapshot()) - before).max() <= 1e-12 * 300
     assert box.contacts > 100_000
-
-
-def test_momentum_changes_by_what_gravity_floor_and_ceiling_give(gas):
-    number, gravity = 300, 0.2
-    box = gas(number, (10.0, 10.0, 12.0), walls=(P, P, P, P, S, S), gravity=gravity, seed=6)
-    before = momentum(box, box.snapshot())
-    box.advance(200.0)
-    change = momentum(box, box.snapshot()) - before
-    floor, ceiling = box.wall_impulse[4:]
-    weight = number * gravity * box.time
-    assert min(floor, ceiling) > 0.01 * weight
-    assert np.abs(change[:2]).max() <= 1e-11 * number
-    assert abs(change[2] - (floor - ceiling - weight)) <= 1e-11 * weight
 
 
 def scattered_pairs():

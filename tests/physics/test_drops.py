@@ -133,17 +133,8 @@ def agrees(values, exact, within):
 def test_an_isolated_box_with_a_drop_visits_all_states_alike(nuclei, sticking, ball):
     # a ball of 0.2 makes the drop half as wide again with three of them: it then leaves a tenth less room
     molecules = 3
-    drops = Drops(
-        water(2.0),
-        number=molecules,
-        kT=1.6,
-        nuclei=nuclei,
-        sticking=sticking,
-        position=MIDDLE,
-        nucleus=0.2,
-        nucleus_mass=PINNED,
-        molecule_radius=ball,
-    )
+    facts = {"nucleus": 0.2, "nucleus_mass": PINNED, "molecule_radius": ball, "sticking": sticking}
+    drops = Drops(water(2.0), number=molecules, kT=1.6, nuclei=nuclei, position=MIDDLE, **facts)
     parcel = box(drops, 3, kT=1.6)
     chance, energy = microcanonical(sum(parcel.energy()) + parcel.condensed_energy, molecules, drops)
     rows = sampled(parcel, 4.0, 20_000, lambda box: (box.liquid, box.liquid_energy))
@@ -152,41 +143,15 @@ def test_an_isolated_box_with_a_drop_visits_all_states_alike(nuclei, sticking, b
     agrees(here * (rows[:, 1:] - energy), 0.0, 0.04)
 
 
-def test_two_drops_share_their_molecules_in_every_way_alike():
-    molecules = 3
-    facts = {"nucleus": 0.12, "nucleus_mass": PINNED, "molecule_radius": 0.0}
+@pytest.mark.parametrize(("ball", "nucleus", "seed"), [(0.0, 0.12, 3), (0.12, 0.1, 7)])
+def test_two_drops_share_their_molecules_in_every_way_alike_but_for_the_room_that_they_take(ball, nucleus, seed):
+    molecules, facts = 3, {"nucleus": nucleus, "nucleus_mass": PINNED, "molecule_radius": ball}
     drops = Drops(water(1.0), number=molecules, kT=1.6, nuclei=10.0, position=PAIR, **facts)
-    parcel = box(drops, 3, kT=1.6)
-    chance, _ = microcanonical(sum(parcel.energy()) + parcel.condensed_energy, molecules, drops)
-    held = sampled(parcel, 4.0, 30_000, lambda box: box.drops()[2])
-    total = held.sum(axis=1)
-    ways, exact = [], []
-    for n in range(molecules + 1):
-        for first in range(n + 1):
-            ways.append((total == n) & (held[:, 0] == first))
-            exact.append(chance[n] / (n + 1))
-    agrees(np.array(ways).T, np.array(exact), 0.007)
-    assert parcel.merged == 0
-
-
-def test_two_drops_that_grow_leave_less_room_the_more_they_hold():
-    molecules, ball, nucleus = 3, 0.12, 0.1
-    drops = Drops(
-        water(1.0),
-        number=molecules,
-        kT=1.6,
-        nuclei=10.0,
-        position=PAIR,
-        nucleus=nucleus,
-        nucleus_mass=PINNED,
-        molecule_radius=ball,
-    )
-    parcel = box(drops, 7, kT=1.6)
+    parcel = box(drops, seed, kT=1.6)
     total = sum(parcel.energy()) + parcel.condensed_energy
     held = sampled(parcel, 4.0, 30_000, lambda box: box.drops()[2])
-    ways = [(n, first) for n in range(molecules + 1) for first in range(n + 1)]
     seen, log_weight = [], []
-    for n, first in ways:
+    for n, first in ((k, j) for k in range(molecules + 1) for j in range(k + 1)):
         v = molecules - n
         volume = (1.0 - SMALL) ** 3
         for each in (first, n - first):
@@ -196,6 +161,7 @@ def test_two_drops_that_grow_leave_less_room_the_more_they_hold():
         log_weight.append(weight + (shape - 1.0) * math.log(total - PHI * v) - special.gammaln(shape))
         seen.append((held.sum(axis=1) == n) & (held[:, 0] == first))
     agrees(np.array(seen).T, normal(np.array(log_weight)), 0.007)
+    assert parcel.merged == 0
 
 
 # ------------------------------------------------------------------ between heat baths
@@ -224,15 +190,8 @@ def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
 def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
     # forty molecules of air, each of which has 0.8 % less room for every molecule that joins the drop
     molecules, air, rng = 30, 40, np.random.default_rng(5)
-    drops = Drops(
-        water(20.0),
-        number=molecules,
-        nuclei=50.0,
-        position=MIDDLE,
-        nucleus=0.2,
-        nucleus_mass=PINNED,
-        molecule_radius=0.12,
-    )
+    facts = {"nucleus": 0.2, "nucleus_mass": PINNED, "molecule_radius": 0.12}
+    drops = Drops(water(20.0), number=molecules, nuclei=50.0, position=MIDDLE, **facts)
     shelf = np.linspace(0.1, 0.9, 5)
     parcel = DropParcelSet(
         np.array([(x, y, z) for z in (0.02, 0.98) for x in shelf for y in shelf[:4]]),
@@ -260,15 +219,8 @@ def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
 def test_a_light_drop_that_flies_about_is_in_the_same_balance(mass, ball):
     # it moves freely in the box, and has hardly more mass than a molecule
     molecules, nucleus = 4, 0.12
-    drops = Drops(
-        water(2.0),
-        number=molecules,
-        nuclei=10.0,
-        position=MIDDLE,
-        nucleus=nucleus,
-        nucleus_mass=mass,
-        molecule_radius=ball,
-    )
+    facts = {"nucleus": nucleus, "nucleus_mass": mass, "molecule_radius": ball}
+    drops = Drops(water(2.0), number=molecules, nuclei=10.0, position=MIDDLE, **facts)
     parcel = box(drops, 8, walls=BATHS)
     n = np.arange(molecules + 1)
     own = 3.0 * np.log(1.0 - 2.0 * np.cbrt(nucleus**3 + n * ball**3))

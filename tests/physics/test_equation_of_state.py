@@ -73,26 +73,25 @@ def compare(gas, row, number, contacts):
     return contacts
 
 
+@pytest.mark.parametrize(
+    ("number", "contacts"), [(500, 3e5), pytest.param(2000, 6e6, marks=pytest.mark.validate)], ids=["", "long"]
+)
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"phi={row[0]}")
-def test_spheres_press_and_meet_as_molecular_dynamics_and_enskog_say(gas, row):
-    compare(gas, row, 500, 3e5)
+def test_spheres_press_and_meet_as_molecular_dynamics_and_enskog_say(gas, row, number, contacts):
+    assert number < 2000 or kinetic_gas.compressibility_noise(row[1], contacts) / (row[1] - 1.0) <= 0.003
+    compare(gas, row, number, contacts)
 
 
-@pytest.mark.validate
-@pytest.mark.parametrize("row", TABLE, ids=lambda row: f"phi={row[0]}")
-def test_spheres_press_and_meet_to_three_parts_in_a_thousand(gas, row):
-    contacts = 6e6
-    assert kinetic_gas.compressibility_noise(row[1], contacts) / (row[1] - 1.0) <= 0.003
-    compare(gas, row, 2000, contacts)
-
-
-@pytest.mark.parametrize("packing", [0.02, 0.1, 0.3])
-@pytest.mark.parametrize("gravity", [0.0, 0.2])
-def test_the_virial_of_contacts_and_the_impulses_on_walls_are_one_pressure(gas, packing, gravity):
+@pytest.mark.parametrize(
+    ("packing", "gravity", "planar"),
+    [*((packing, gravity, False) for packing in (0.02, 0.1, 0.3) for gravity in (0.0, 0.2)), (0.25, 0.0, True)],
+)
+def test_the_virial_of_contacts_and_the_impulses_on_walls_are_one_pressure(gas, packing, gravity, planar):
     # d/dt sum(m r . v) = 2 K + contacts + walls + weight holds at every moment, so its integral does for a single run
     number = 200
-    side = (number * math.pi / 6.0 / packing) ** (1.0 / 3.0)
-    box = gas(number, (side, side, side), gravity=gravity, seed=12)
+    wide = math.sqrt(number * math.pi / 4.0 / packing) if planar else (number * math.pi / 6.0 / packing) ** (1.0 / 3.0)
+    sides = (wide, 1.0, wide) if planar else (wide,) * 3
+    box = gas(number, sides, gravity=gravity, planar=planar, seed=12)
 
     def product():
         here = box.snapshot()
@@ -114,36 +113,14 @@ def test_the_virial_of_contacts_and_the_impulses_on_walls_are_one_pressure(gas, 
         events = box.contacts + box.wall_hits.sum()
         allowed = step**2 * (number * gravity**2 * box.time + 3.0 * gravity * math.sqrt(events)) / (energy * box.time)
         assert allowed < 1e-4
+    along = [0, 2] if planar else [0, 1, 2]
     low, high = box.wall_impulse[::2], box.wall_impulse[1::2]
-    walls = float(np.sum(0.5 * low - (box.length - 0.5) * high))
+    walls = float(np.sum((0.5 * low - (box.length - 0.5) * high)[along]))
     assert box.contacts > 1000
-    assert box.wall_hits.min() > 20
+    assert box.wall_hits[[0, 1, 4, 5]].min() > 20
     # 2 K minus the potential energy, K + potential being the energy
     surplus = 2.0 * energy * box.time - 3.0 * height + float(box.virial.sum()) + walls - (product() - before)
     assert abs(surplus) <= allowed * energy * box.time
-
-
-def test_the_six_walls_and_the_contacts_show_the_same_pressure_on_average(gas):
-    number, side = 300, 12.0
-    box = gas(number, (side,) * 3, seed=13)
-    box.advance(20.0)
-    pressures = []
-    for _ in range(20):
-        impulse, virial, time = box.wall_impulse, box.virial.sum(), box.time
-        box.advance(time + 60.0)
-        elapsed = box.time - time
-        on_walls = (box.wall_impulse - impulse) / (side**2 * elapsed)
-        # centres reach (L - sigma)^3; the walls' own term carries the half diameter between centre and surface
-        inside = (2.0 * box.energy()[0] + (box.virial.sum() - virial) / elapsed) / (3.0 * side**2 * (side - 1.0))
-        pressures.append([*on_walls, inside])
-    mean, error = block_average(np.array(pressures))
-    assert error.max() / mean.mean() < 0.01
-    assert (np.abs(mean[:6] - mean[:6].mean()) <= 4.0 * error[:6]).all()
-    both = block_average(np.array(pressures)[:, :6].mean(axis=1) - np.array(pressures)[:, 6])
-    assert abs(both.mean) <= 4.0 * both.standard_error
-    assert both.standard_error / mean.mean() < 0.003
-    # and it is far from that of an ideal gas
-    assert mean.mean() > 1.2 * number / (side - 1.0) ** 3
 
 
 @pytest.mark.parametrize("diameter", [0.0, 1.0])
@@ -157,17 +134,3 @@ def test_a_molecule_alone_presses_by_the_room_that_its_centre_has(gas, diameter)
     exact = np.repeat(speed**2 / (side - diameter), 2)
     assert np.abs(force - exact).max() <= 2.0 * speed.max() / box.time
     assert box.contacts == 0
-
-
-def test_points_press_as_an_ideal_gas_exactly(gas):
-    number, side, time = 400, 10.0, 2000.0
-    box = gas(number, (side,) * 3, diameter=0.0, seed=15)
-    velocity = np.abs(box.snapshot().velocity)
-    box.advance(time)
-    pressure = box.wall_impulse / (side**2 * time)
-    exact = np.repeat(np.sum(velocity**2, axis=0), 2) / side**3
-    # each molecule hits each wall at most once more or once less than its share
-    assert (np.abs(pressure - exact) <= np.repeat(2.0 * np.sum(velocity, axis=0), 2) / (side**2 * time)).all()
-    assert pressure.mean() == pytest.approx(number / side**3, rel=0.01)
-    assert box.contacts == 0
-    assert box.open_density == pytest.approx(number / side**3, rel=1e-14)

@@ -151,12 +151,6 @@ def test_a_gas_follows_the_temperature_of_its_walls(gas):
     assert abs(mean[0] - 0.75) <= 4.0 * error[0]
 
 
-def test_a_wall_without_a_bath_has_no_temperature(gas):
-    box = gas(5, (10.0,) * 3, walls=(HeatBath(2.0), S, P, P, S, S), seed=37)
-    assert np.isnan(box.wall_kT()[1:]).all()
-    assert box.wall_kT()[0] == 2.0
-
-
 @pytest.mark.parametrize("diameter", [0.0, 1.0])
 def test_heat_baths_of_a_plane_gas_give_each_molecule_kT(gas, diameter):
     number, kT = 200, 1.4

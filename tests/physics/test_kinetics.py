@@ -63,13 +63,9 @@ def maxwellian(gas, number, samples):
     return found.size
 
 
-def test_molecules_of_one_speed_become_maxwells(gas):
-    assert maxwellian(gas, 1000, 20) == 20_000
-
-
-@pytest.mark.validate
-def test_molecules_of_one_speed_become_maxwells_to_three_parts_in_a_thousand(gas):
-    assert kolmogorov_smirnov_critical(maxwellian(gas, 5000, 200), LEVEL) < 0.003
+@pytest.mark.parametrize(("number", "samples"), [(1000, 20), pytest.param(5000, 200, marks=pytest.mark.validate)])
+def test_molecules_of_one_speed_become_maxwells(gas, number, samples):
+    assert maxwellian(gas, number, samples) == number * samples
 
 
 def test_a_beam_becomes_the_same_in_all_directions(gas):
@@ -84,15 +80,17 @@ def test_a_beam_becomes_the_same_in_all_directions(gas):
     assert (np.abs(mean - 1.0) <= 4.0 * error).all()
 
 
-@pytest.mark.parametrize("ratio", [4.0, 100.0])
-def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio):
-    number, heavy = 300, 60
+@pytest.mark.parametrize(("ratio", "planar"), [(4.0, False), (100.0, False), (20.0, True)])
+def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio, planar):
+    number, heavy, sides = 300, 60, (35.0, 1.0, 35.0) if planar else (11.0,) * 3
     mass = np.where(np.arange(number) < heavy, ratio, 1.0)
-    rng = np.random.default_rng(23)
-    velocity = equal_speeds(1.0, number, rng)
+    # all energy starts in the light ones
+    velocity = equal_speeds(1.0, number, np.random.default_rng(23))
+    velocity[:, 1] *= not planar
     velocity[:heavy] = 0.0
-    velocity *= math.sqrt(3.0 * number / np.sum(mass[:, None] * velocity**2))
-    box = gas(number, (11.0,) * 3, seed=23, mass=mass, velocity=velocity)
+    freedom = 2.0 if planar else 3.0
+    velocity *= math.sqrt(freedom * number / np.sum(mass[:, None] * velocity**2))
+    box = gas(number, sides, seed=23, mass=mass, velocity=velocity, planar=planar)
     energies = []
     # a heavy molecule takes about its mass over four light ones' contacts to warm
     for snapshot in snapshots(box, 2000, warm_up=20.0 + 5.0 * ratio):
@@ -101,7 +99,7 @@ def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio):
     mean, error = block_average(energies)
     assert (error < 0.02).all()
     # with walls only energy is conserved, not momentum, so each has exactly its share
-    assert (np.abs(mean - 1.5) <= 4.0 * error).all()
+    assert (np.abs(mean - 0.5 * freedom) <= 4.0 * error).all()
 
 
 MIXTURES = {
@@ -137,25 +135,6 @@ def test_a_mixture_meets_as_often_as_theory_says(gas, name):
     assert abs(measured / expected - 1.0) <= 4.0 * error / expected + 0.002
     only_light = 0.5 * members[0] * rate[0, 0]
     assert expected > 1.1 * only_light
-
-
-def test_all_directions_after_a_contact_are_alike(gas):
-    # cos(chi) of the deflection is even between -1 and 1 for spheres met at random
-    rng = np.random.default_rng(25)
-    pairs = 4096
-    place = 12.0 * np.stack(np.meshgrid(*[np.arange(16)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 4.0
-    towards = equal_speeds(1.0, pairs, rng)
-    across = np.cross(towards, equal_speeds(1.0, pairs, rng))
-    across *= (np.sqrt(rng.random(pairs)) / np.sqrt(np.sum(across**2, axis=1)))[:, None]
-    x = np.concatenate([place + 2.0, place + 2.0 + 2.0 * towards + across])
-    v = np.concatenate([towards, np.zeros_like(towards)])
-    box = gas(2 * pairs, (192.0,) * 3, seed=25, position=x, velocity=v)
-    box.advance(3.0)
-    assert box.contacts == pairs
-    after = box.snapshot().velocity.reshape(2, -1, 3)
-    cosine = np.sum((after[0] - after[1]) * towards, axis=1)
-    distance = stats.kstest(cosine, "uniform", args=(-1.0, 2.0)).statistic
-    assert distance < kolmogorov_smirnov_critical(pairs, LEVEL)
 
 
 def test_free_flights_are_as_long_as_those_of_a_random_walk(gas):

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine import FollowPressure, HeatBath, Periodic, Piston, Specular, lattice_positions
+from atmosbox.engine import FollowPressure, HeatBath, Periodic, Piston, Specular
 from atmosbox.engine.core.lift import stiffness
-from atmosbox.scene.statistics import block_average
 from tests.oracle import kinetic_gas
 
 S, P = Specular(), Periodic()
@@ -267,34 +266,6 @@ def test_discs_below_a_piston_press_as_hard_as_they_are_told(gas):
     assert abs(mean - pressure) <= 4.0 * error
 
 
-def test_an_approaching_piston_meets_a_molecule_at_the_right_time_and_doubles_its_own_speed_on_it(gas):
-    walls = (S,) * 5 + (Piston(),)
-    # another one rests far below: a single molecule needs further kernels
-    where, velocity = [[5, 5, 5], [1, 1, 1]], [[0, 0, 1.0], [0, 0, 0]]
-    box = gas(2, (10.0,) * 3, walls=walls, diameter=0.0, seed=53, position=where, velocity=velocity)
-    box.set_piston_velocity(-1.0)
-    box.advance(2.4)
-    assert box.snapshot().velocity[0, 2] == 1.0
-    # they collide at z = 7.5 after 2.5, and the molecule moves down at 3
-    box.advance(4.0)
-    assert box.snapshot().velocity[0, 2] == pytest.approx(-3.0, rel=1e-14)
-    assert box.snapshot().position[0, 2] == pytest.approx(3.0, rel=1e-14)
-    assert box.work == pytest.approx(4.0, rel=1e-14)
-
-
-def test_a_piston_that_stops_early_leaves_no_hits_behind(gas):
-    number, side = 500, 20.0
-    where = lattice_positions((side,) * 3, np.ones(number))
-    at_rest = np.zeros((number, 3))
-    walls = (S,) * 5 + (Piston(-0.1),)
-    box = gas(number, (side,) * 3, walls=walls, seed=54, position=where, velocity=at_rest)
-    box.set_piston_velocity(0.0)
-    box.advance(500.0)
-    assert (box.snapshot().position == where).all()
-    assert box.energy() == (0.0, 0.0, 0.0)
-    assert set(box.events.values()) == {0}
-
-
 def test_a_piston_that_changes_its_mind_at_every_moment_does_no_harm(gas, out_of_place):
     rng = np.random.default_rng(55)
     box = gas(200, (6.0, 6.0, 10.0), walls=(S,) * 5 + (Piston(),), diameter=0.7, seed=55)
@@ -307,21 +278,3 @@ def test_a_piston_that_changes_its_mind_at_every_moment_does_no_harm(gas, out_of
         assert overlap <= 1e-9
         assert box.ledger() <= 1e-11
     assert box.wall_hits[5] > 100
-
-
-def test_a_piston_at_rest_is_a_specular_ceiling(gas):
-    number, length = 300, (9.0, 9.0, 9.0)
-    pressures = []
-    for ceiling in (S, Piston()):
-        box = gas(number, length, walls=(S,) * 5 + (ceiling,), seed=56)
-        values = []
-        for _ in range(20):
-            impulse, time = box.wall_impulse[5], box.time
-            box.advance(time + 50.0)
-            values.append((box.wall_impulse[5] - impulse) / (box.time - time) / 81.0)
-        pressures.append(block_average(values))
-        assert box.work == 0.0
-        assert sum(box.energy()) == pytest.approx(1.5 * number, rel=1e-12)
-    (specular, e1), (piston, e2) = pressures
-    assert abs(specular - piston) <= 4.0 * math.hypot(e1, e2)
-    assert math.hypot(e1, e2) / specular < 0.01

@@ -20,7 +20,6 @@ from atmosbox.engine import (
 from atmosbox.scene.statistics import block_average
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN
-from tests.oracle.mayer import fourth_virial
 from tests.oracle.well_energy import square_well_energy
 
 ROUND = (Periodic(),) * 6
@@ -91,37 +90,6 @@ def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
     assert factor.standard_error < 2.5e-3
     assert abs(factor.mean - theory.square_well_compressibility(density, kT)) < 4.0 * factor.standard_error
     assert abs(energy.mean - square_well_energy(density, kT)) < 4.0 * energy.standard_error
-
-
-@pytest.mark.validate
-@pytest.mark.parametrize(
-    ("kT", "packing", "time"), [(1.0, 0.02, 4e4), (1.5, 0.01, 1.5e4), (2.0, 0.01, 1e4), (3.0, 0.01, 1.5e4)]
-)
-def test_the_third_virial_coefficient_is_seen_by_itself(kT, packing, time):
-    """B3 = (Z - 1 - B2 rho) / rho^2 - B4 rho, to 15 %, in 3 standard errors.
-
-    With N molecules that neither come nor go, Z differs by (rho / 2N) d ln(dp/drho) / d rho from that of many, at
-    T* = 1 by half of what B3 makes. B3 is small there: at half the density it would take five times as long.
-    """
-    number, density = 500, packing * 6.0 / math.pi
-    gas = well_gas(number, density, kT, rate=1.5, seed=7)
-    gas.advance(50.0)
-    sums = [gas.virial.sum()]
-    for block in range(60):
-        gas.advance(50.0 + time * (block + 1) / 60.0)
-        sums.append(gas.virial.sum())
-    mean, error = block_average(np.diff(sums) * 60.0 / (3.0 * number * kT * time), 60)
-    second, third = (float(of(kT)) for of in (theory.square_well_second_virial, theory.square_well_third_virial))
-    fourth, unsure = fourth_virial(kT)
-    few = (
-        density * (second + 3.0 * third * density) / (1.0 + 2.0 * second * density + 3.0 * third * density**2) / number
-    )
-    found = (mean + few - second * density) / density**2 - fourth * density
-    spread = math.hypot(error / density**2, unsure * density)
-    assert gas.ledger() < 1e-12
-    assert spread < 0.2 * third
-    assert abs(found - third) < 3.0 * spread, (found, third, spread)
-    assert abs(mean + few - (third + fourth * density) * density**2 - second * density) < 3.0 * error
 
 
 @pytest.mark.validate

@@ -296,13 +296,6 @@ def test_a_molecule_of_air_is_the_same_molecule_from_frame_to_frame():
     assert flown[:, air].max() < 6.0
 
 
-def test_dry_scenes_are_saved_as_before():
-    outcome = runner.execute(runner.prepare("temperature", {"molecules": 20, "duration": 0.1}, save_molecules=True))
-    assert "species" not in outcome.dataset
-    assert np.isfinite(outcome.dataset.molecule_position.values).all()
-    assert outcome.dataset.sizes["molecule"] == 20
-
-
 def test_the_pushes_of_molecules_on_droplets_that_flow_with_the_air_are_those_of_kinetic_theory():
     ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
     outside = np.geomspace(1e5, 3e4, 60)
