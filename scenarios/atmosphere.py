@@ -23,19 +23,12 @@ discs in a plane, and a slab one scale height thick stands for the third dimensi
 """
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import (
-    HeatBath,
-    Periodic,
-    RandomNumbers,
-    Specular,
-    maxwell_velocities,
-    rotational_energies,
-)
+from atmosbox.engine import HeatBath, Maxwell, Periodic, Rotating, Scattered, Specular, Start
 from atmosbox.errors import Setting
 from atmosbox.scene import (
     Air,
@@ -274,30 +267,22 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     column = Column(settings, engine)
     n = settings.molecules
     plane = settings.plane
-    rng = RandomNumbers(settings.seed)
     length = (1.0, 2.0 * column.diameter if plane else 1.0, column.height)
-    diameter = np.full(n, column.diameter)
-    sides = (True, True, False)
     if settings.start == "equilibrium":
-        position = engine.scatter(length, diameter, rng, periodic=sides, planar=plane, scale_height=1.0)
+        places = Scattered(scale_height=1.0)
     else:
-        filled = min(FILLED if settings.start == "uniform" else 0.1, column.height)
-        position = engine.scatter(length, diameter, rng, periodic=sides, planar=plane, top=filled)
-    velocity = maxwell_velocities(1.0, np.ones(n), rng, planar=plane, exact=True)
-    more: dict[str, Any] = {}
-    if settings.rotation:
-        more |= {"rotation": 2.0, "rotational_energy": rotational_energies(1.0, np.full(n, 2.0), rng)}
-    parcel = engine.make(
-        position,
-        velocity,
+        places = Scattered(top=min(FILLED if settings.start == "uniform" else 0.1, column.height))
+    spins = (Rotating(1.0),) if settings.rotation else ()
+    parcel = engine.begin(
+        Start(n, (places, Maxwell(1.0, exact=True), *spins)),
         length=length,
         walls=(Periodic(),) * 4 + (HeatBath(1.0) if settings.floor == "heat-bath" else Specular(), Specular()),
         diameter=column.diameter,
         gravity=1.0,
         planar=plane,
+        rotation=2.0 if settings.rotation else 0.0,
         layers=LAYERS,
         seed=settings.seed,
-        **more,
     )
     scale = column.scale
     settled = _settled(column, settings)

@@ -29,15 +29,18 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine import (
     HeatBath,
+    Maxwell,
     Periodic,
+    Placed,
     Ramp,
     RandomBath,
     RandomNumbers,
+    Scattered,
     Specular,
     SquareWell,
+    Start,
     Wall,
     lattice_positions,
-    maxwell_velocities,
 )
 from atmosbox.errors import Setting, SettingError
 from atmosbox.scene import (
@@ -174,14 +177,11 @@ def _liquid_density(settings: Settings) -> float:
     return _densities(min(_warmth(settings), 1.2))[0]
 
 
-def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.ndarray:
-    """Return the positions of the molecules at the start, those that attract each other first."""
+def _sites(settings: Settings, rng: RandomNumbers) -> np.ndarray:
+    """Return the positions of molecules that are partly liquid at the start, those that attract each other first."""
     sides, air = _sides(settings)
     n = settings.molecules
     around = (True, True, not _walled(settings))
-    if settings.start == "vapour":
-        mixed = engine.scatter(sides, np.ones(n + air), rng, periodic=around)
-        return np.asarray(mixed[_shuffled(len(mixed), rng)])
     # lattice sites as dense as the liquid: it takes those nearest to its middle, vapour and air some of the others
     dense, thin = _densities(_warmth(settings))
     volume = math.prod(sides)
@@ -196,12 +196,8 @@ def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.
     others = n - len(inner) + air
     if others > len(outer):
         raise settings.refusal("density", f"leaves no vapour beside a {settings.start}", "give less, or less air")
-    return np.asarray(sites[np.concatenate([inner, outer[_shuffled(len(outer), rng)[:others]]])])
-
-
-def _shuffled(number: int, rng: RandomNumbers) -> np.ndarray:
-    """Return the integers from 0 to ``number`` - 1 in random order."""
-    return np.argsort(rng.random(number), kind="stable")
+    shuffled = np.argsort(rng.random(len(outer)), kind="stable")
+    return np.asarray(sites[np.concatenate([inner, outer[shuffled[:others]]])])
 
 
 def _walled(settings: Settings) -> bool:
@@ -222,18 +218,18 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the molecules in their box."""
     scale = _scale(settings)
     kT = scale.reduced_temperature(settings.temperature)
-    rng = RandomNumbers(settings.seed)
     sides, air = _sides(settings)
     n = settings.molecules
-    place = _places(settings, engine, rng)
-    velocity = maxwell_velocities(kT, np.ones(n + air), rng)
+    # at random, or on lattice sites that are drawn before
+    rng = None if settings.start == "vapour" else RandomNumbers(settings.seed)
+    places = Scattered(numbered="at random") if rng is None else Placed(_sites(settings, rng))
     ends: Wall = Periodic()
     if _walled(settings):
         ends = HeatBath(kT) if settings.bath == "walls" else Specular()
     rate = RATE if settings.start == "vapour" else FAST_RATE
-    parcel = engine.make(
-        place,
-        velocity,
+    parcel = engine.begin(
+        Start(n + air, (places, Maxwell(kT))),
+        rng=rng,
         length=sides,
         walls=(Periodic(),) * 4 + (ends, ends),
         gravity=GRAVITY if settings.start == "pool" else 0.0,

@@ -17,12 +17,13 @@ gravity.
 """
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers
+from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers, Scattered, Start
 from atmosbox.scene import (
     Air,
     DropSizes,
@@ -39,7 +40,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import MoistBox
 from atmosbox.scene.knob import wall_temperature
-from atmosbox.scene.moisture import moist_air, nuclei_heat_capacity, water
+from atmosbox.scene.moisture import WARM, moist_air, nuclei_heat_capacity, water
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.statistics import BlockAverage
 
@@ -98,7 +99,7 @@ def _start(settings: Settings, *, ideal: bool) -> MoistBox:
     return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
 
-def _liquid(settings: Settings, start: MoistBox, place: np.ndarray) -> Liquid:
+def _liquid(settings: Settings, start: MoistBox, place: Sequence[Sequence[float]] = ()) -> Liquid:
     """Return a mist, or drops around nuclei at these places."""
     heat = nuclei_heat_capacity(settings.molecules)
     if not settings.drops:
@@ -118,23 +119,19 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray) -> Liquid:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the moist air between its walls."""
     n, drops = settings.molecules, settings.drops
-    rng = RandomNumbers(settings.seed)
     start = _start(settings, ideal=engine.ideal)
     scale, length = start.scale, (start.side + 1.0,) * 3
-    gas = moist_air(n, start.vapour, rng)
-    wide = np.concatenate([np.full(drops, 2.0 * settings.drop_size * MOLECULE), np.ones(n)])
-    place = engine.scatter(length, wide, rng)
-    parcel = engine.make(
-        place[drops:],
-        gas.velocity,
-        length=length,
-        walls=(HeatBath(1.0),) * 6,
-        mass=gas.mass,
-        rotation=gas.rotation,
-        rotational_energy=gas.rotational_energy,
-        seed=settings.seed,
-        liquid=_liquid(settings, start, place[:drops]),
-    )
+    gas = moist_air(n, start.vapour)
+    box: dict[str, Any] = {"length": length, "walls": (HeatBath(1.0),) * 6, "seed": settings.seed, **gas._asdict()}
+    if drops:  # their nuclei are placed before the molecules
+        rng = RandomNumbers(settings.seed)
+        drawn = Start(n, WARM).draw(rng, **gas._asdict())
+        wide = np.concatenate([np.full(drops, 2.0 * settings.drop_size * MOLECULE), np.ones(n)])
+        place = engine.scatter(length, wide, rng)
+        box |= {"rotational_energy": drawn.rotational_energy, "liquid": _liquid(settings, start, place[:drops])}
+        parcel = engine.make(place[drops:], drawn.velocity, **box)
+    else:
+        parcel = engine.begin(Start(n, (*WARM, Scattered())), liquid=_liquid(settings, start), **box)
     memory = start.memory(_faces(settings, start))
     return Setup(
         parcel,

@@ -27,7 +27,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Periodic, RandomNumbers, Specular, maxwell_velocities, rotational_energies
+from atmosbox.engine import (
+    HeatBath,
+    Maxwell,
+    Periodic,
+    Placed,
+    RandomNumbers,
+    Rotating,
+    Scattered,
+    Specular,
+    Start,
+)
 from atmosbox.errors import Option
 from atmosbox.scene import (
     Air,
@@ -228,15 +238,11 @@ def usual_engine(settings: Settings) -> str:
     return "dsmc" if settings.case == "stable" else "exact"
 
 
-def _start(box: Box, settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> tuple[np.ndarray, np.ndarray]:
-    """Return the positions of the molecules, and their temperatures."""
+def _layered(box: Box, settings: Settings, rng: RandomNumbers) -> tuple[np.ndarray, np.ndarray]:
+    """Return the positions of molecules as dense and as warm in each layer as the start requires."""
     n = settings.molecules
     turn = settings.sides == "periodic"
     edge = 0.5 * box.gas.diameter
-    if settings.start == "mixed" and not box.thin:
-        length = (box.width, 2.0, box.height)
-        place = engine.scatter(length, np.ones(n), rng, periodic=(turn, False, False), planar=True)
-        return place, np.ones(n)
     rest = box.rest()
     even = settings.start == "mixed"
     density = np.ones_like(rest.density) if even else rest.density
@@ -268,29 +274,30 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     if settings.rotation and not box.thin:
         raise settings.refusal("rotation", "is not for the discs of a plane", Option("engine", "dsmc"))
     n, scale = settings.molecules, box.scale
-    rng = RandomNumbers(settings.seed)
-    position, kT = _start(box, settings, engine, rng)
     planar = not box.thin
-    velocity = maxwell_velocities(kT, np.ones(n), rng, planar=planar, exact=True)
-    more: dict[str, Any] = {}
+    if settings.start == "mixed" and planar:
+        rng, places, kT = None, Scattered(), 1.0
+    else:
+        rng = RandomNumbers(settings.seed)
+        position, kT = _layered(box, settings, rng)
+        places = Placed(position)
+    spins = (Rotating(kT),) if settings.rotation else ()
     if box.thin and box.usual:
         engine = replace(engine, options={**engine.options, "cell": CELL})
-    if settings.rotation:
-        more |= {"rotation": 2.0, "rotational_energy": rotational_energies(kT, np.full(n, 2.0), rng)}
     warm, cold = HeatBath(box.floor), HeatBath(box.ceiling)
     side, slab = (Periodic() if settings.sides == "periodic" else Specular()), (Specular() if planar else Periodic())
     ends = (Specular(), Specular()) if box.beside else (warm, cold)
-    parcel = engine.make(
-        position,
-        velocity,
+    parcel = engine.begin(
+        Start(n, (places, Maxwell(kT, exact=True), *spins)),
+        rng=rng,
         length=(box.width, 2.0 if planar else 1.0, box.height),
         walls=(*((warm, cold) if box.beside else (side, side)), slab, slab, *ends),
         diameter=np.full(n, box.gas.diameter),
         gravity=box.gravity,
         planar=planar,
         layers=box.rows,
+        rotation=2.0 if settings.rotation else 0.0,
         seed=settings.seed,
-        **more,
     )
     rest = box.rest()
     path = 1.0 if box.thin else float(box.gas.free_path(box.density))

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import Periodic, RandomNumbers, Specular, maxwell_velocities
+from atmosbox.engine import Maxwell, Periodic, Scattered, Specular, Start
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -141,17 +141,13 @@ def _scale(settings: Settings) -> Scale:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return both gases at the moment when the wall is taken away."""
     n = settings.molecules
-    rng = RandomNumbers(settings.seed)
     scale, (density, side) = _scale(settings), _box(settings)
     length = (rounded(settings.si.length / scale.length), side, side)
-    position = engine.scatter(length, np.ones(n), rng, periodic=(False, True, True))
-    position = position[np.argsort(position[:, 0], kind="stable")]
     right = np.arange(n) >= n // 2
     mass = np.where(right, settings.mass_ratio, 1.0)
     rate = rounded(_rate(settings, ideal=engine.ideal))
-    parcel = engine.make(
-        position,
-        maxwell_velocities(1.0, mass, rng),
+    parcel = engine.begin(
+        Start(n, (Scattered(numbered="along x"), Maxwell(1.0))),
         length=length,
         walls=(Specular(),) * 2 + (Periodic(),) * 4,
         mass=mass,

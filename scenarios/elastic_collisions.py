@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import RandomNumbers, equal_speeds
+from atmosbox.engine import EqualSpeeds, RandomNumbers, Scattered, Start
 from atmosbox.scene import (
     Air,
     Discs,
@@ -74,9 +74,9 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     diameter = np.sqrt(4.0 * area / math.pi)
     thickness = 2.0 * float(diameter.max())
     length = (1.0, thickness, 1.0)
-    parcel = engine.make(
-        engine.scatter(length, diameter, rng, planar=True),
-        equal_speeds(1.0, n, rng, planar=True),
+    parcel = engine.begin(
+        Start(n, (Scattered(), EqualSpeeds(1.0))),
+        rng=rng,
         length=length,
         mass=mass,
         diameter=diameter,

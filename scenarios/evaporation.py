@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import FollowPressure, Pool, RandomNumbers
+from atmosbox.engine import FollowPressure, Pool
 from atmosbox.errors import Setting
 from atmosbox.scene import (
     Air,
@@ -127,7 +127,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     si = settings.si
     start = _start(settings, ideal=engine.ideal)
     scale, n = start.scale, settings.molecules
-    rng = RandomNumbers(settings.seed)
     substance = water(scale)
     driver = FollowPressure(
         [0.0],
@@ -137,7 +136,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         excess=start.excess,
     )
     pool = Pool(substance, number=settings.pool, kT=1.0)
-    parcel = moist_parcel(engine, n, start.vapour, start.sides, driver=driver, liquid=pool, rng=rng, seed=settings.seed)
+    parcel = moist_parcel(engine, n, start.vapour, start.sides, driver=driver, liquid=pool, seed=settings.seed)
     boils = float(law.dewpoint(si.pressure)) - 273.15
     walls = warmed_walls(
         parcel,

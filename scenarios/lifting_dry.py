@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import FollowPressure, Piston, RandomNumbers, Specular, maxwell_velocities, rotational_energies
+from atmosbox.engine import FollowPressure, Maxwell, Piston, Rotating, Scattered, Specular, Start
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -128,14 +128,9 @@ def _environment(settings: Settings, duration: float) -> Environment:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the parcel at the ground with its piston."""
     n = settings.molecules
-    rng = RandomNumbers(settings.seed)
     scale, density, sides, excess = _start(settings, ideal=engine.ideal)
     mean_free_time = free_time_of(density, ideal=engine.ideal)
     length = tuple(sides + 1.0)
-    degrees = 2.0 if settings.rotation else 0.0
-    spin = rotational_energies(1.0, np.full(n, degrees), rng)
-    if degrees:
-        spin *= n / spin.sum()
     duration = settings.ascent * mean_free_time
     environment = _environment(settings, duration * scale.time)
     pressures = rounded(_route(settings) / scale.pressure)
@@ -143,13 +138,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     driver = FollowPressure(
         list(times), list(pressures), mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess
     )
-    parcel = engine.make(
-        engine.scatter(length, np.ones(n), rng),
-        maxwell_velocities(1.0, np.ones(n), rng, exact=True),
+    parcel = engine.begin(
+        Start(n, (Rotating(1.0, exact=True), Scattered(), Maxwell(1.0, exact=True))),
         length=length,
         walls=(Specular(),) * 5 + (Piston(),),
-        rotation=degrees,
-        rotational_energy=spin,
+        rotation=2.0 if settings.rotation else 0.0,
         seed=settings.seed,
         driver=driver,
     )

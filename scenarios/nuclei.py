@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import Drops, HeatBath, RandomNumbers, clear_of_drops
+from atmosbox.engine import Drops, HeatBath, Scattered, Start
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -42,7 +42,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
 from atmosbox.scene.headline import CHANCE_ALONE
-from atmosbox.scene.moisture import moist_air, water
+from atmosbox.scene.moisture import WARM, moist_air, water
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN
@@ -148,11 +148,10 @@ def _is_salted(settings: Settings) -> np.ndarray:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the supersaturated air, with drops in it."""
     n = settings.molecules
-    rng = RandomNumbers(settings.seed)
     growth = _growth(settings, ideal=engine.ideal)
     box = growth.box
     scale, side = box.scale, box.side + 1.0
-    gas = moist_air(n, box.vapour, rng)
+    gas = moist_air(n, box.vapour)
     salted = _is_salted(settings)
     centre = _places(settings, side)
     ball = settings.drop_size * (3.0 / (4.0 * math.pi) * law.WATER_VOLUME) ** (1.0 / 3.0) / scale.length
@@ -172,17 +171,12 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         dissolved=tuple(float(each) for each in particles),
     )
     reach = ball * (core + settings.water) ** (1.0 / 3.0) + 0.6
-    position = engine.scatter((side,) * 3, np.ones(n), rng)
-    if not engine.described:
-        position = clear_of_drops(position, centre, reach, side, rng)
-    parcel = engine.make(
-        position,
-        gas.velocity,
+    parcel = engine.begin(
+        Start(n, (*WARM, Scattered(centre=centre, reach=reach))),
         length=(side,) * 3,
         walls=(HeatBath(1.0),) * 6,
         mass=gas.mass,
         rotation=gas.rotation,
-        rotational_energy=gas.rotational_energy,
         seed=settings.seed,
         liquid=liquid,
     )

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, RandomNumbers, equal_speeds, maxwell_velocities
+from atmosbox.engine import EqualSpeeds, HeatBath, Maxwell, Scattered, Start
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -85,19 +85,15 @@ def _gas(settings: Settings, *, ideal: bool) -> tuple[Scale, law.WalledGas]:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the cold gas between warm walls."""
     si, n = settings.si, settings.molecules
-    rng = RandomNumbers(settings.seed)
     scale, gas = _gas(settings, ideal=engine.ideal)
     length = (rounded(gas.side) + 1.0,) * 3
     cold = scale.reduced_temperature(si.start_temperature)
-    if settings.start == "maxwell":
-        velocity = maxwell_velocities(cold, np.ones(n), rng)
-    else:
-        velocity = equal_speeds(math.sqrt(3.0 * cold), n, rng)
-    place = engine.scatter(length, np.ones(n), rng)
-    parcel = engine.make(place, velocity, length=length, walls=(HeatBath(1.0),) * 6, seed=settings.seed)
+    speeds = Maxwell(cold) if settings.start == "maxwell" else EqualSpeeds(math.sqrt(3.0 * cold))
+    start = Start(n, (speeds, Scattered()))
+    parcel = engine.begin(start, length=length, walls=(HeatBath(1.0),) * 6, seed=settings.seed)
     knob = wall_temperature(parcel, scale, settings, low=-200.0, high=WARMEST)
     bins = math.ceil(36 * math.sqrt((knob.high + 273.15) / si.temperature))
-    speeds = Speeds(np.linspace(0.0, 0.125 * bins, bins + 1))
+    shares = Speeds(np.linspace(0.0, 0.125 * bins, bins + 1))
     facts = {
         "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
         "real molecules per simulated one": "1",
@@ -107,7 +103,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K in each sample",
     }
     duration = si.duration / scale.time
-    return Setup(parcel, scale, duration, FRAMES, (Air(), speeds), settle=SETTLE, facts=facts, knobs=(knob,))
+    return Setup(parcel, scale, duration, FRAMES, (Air(), shares), settle=SETTLE, facts=facts, knobs=(knob,))
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:

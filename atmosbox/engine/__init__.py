@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.start.clearing import clear_of_drops
     from atmosbox.engine.start.lattice import lattice_positions
     from atmosbox.engine.start.scatter import random_positions
+    from atmosbox.engine.start.start import EqualSpeeds, Maxwell, Placed, Rotating, Scattered, Start
     from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies, two_halves
     from atmosbox.engine.wells.attracting_parcelset import AttractingParcelSet
     from atmosbox.engine.wells.attraction import RandomBath, SquareWell
@@ -49,6 +50,7 @@ _HOMES = {
     "start.clearing": "clear_of_drops",
     "start.lattice": "lattice_positions",
     "start.scatter": "random_positions",
+    "start.start": "EqualSpeeds Maxwell Placed Rotating Scattered Start",
     "start.velocity": "equal_speeds maxwell_velocities rotational_energies two_halves",
     "wells.attracting_parcelset": "AttractingParcelSet",
     "wells.attraction": "RandomBath SquareWell",
@@ -62,25 +64,31 @@ __all__ = [
     "Course",
     "Driver",
     "Drops",
+    "EqualSpeeds",
     "FollowPressure",
     "HeatBath",
     "Liquid",
+    "Maxwell",
     "Mist",
     "PackingError",
     "Parcel",
     "ParcelSet",
     "Periodic",
     "Piston",
+    "Placed",
     "Pool",
     "Ramp",
     "RandomBath",
     "RandomNumbers",
     "RefusedError",
+    "Rotating",
+    "Scattered",
     "Schedule",
     "Snapshot",
     "Specular",
     "SquareWell",
     "StalledError",
+    "Start",
     "Steps",
     "Substance",
     "Wall",

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.engine import Substance, maxwell_velocities, rotational_energies
-from atmosbox.engine.core.random import Source
+from atmosbox.engine import Maxwell, Rotating, Substance
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import DRY_AIR, WATER
 
-__all__ = ["MoistAir", "moist_air", "nuclei_heat_capacity", "vapour_molecules", "water"]
+__all__ = ["WARM", "MoistAir", "moist_air", "nuclei_heat_capacity", "vapour_molecules", "water"]
 
 Array = NDArray[np.float64]
+WARM = Maxwell(1.0, exact=True), Rotating(1.0, exact=True)
+"""A start at kT = 1 to rounding, without total momentum."""
 NUCLEI = 100.0
 """Heat capacity of the nuclei on which droplets form, in k, where there is enough air."""
 
@@ -89,43 +90,32 @@ def nuclei_heat_capacity(air: int) -> float:
     return min(NUCLEI, 0.005 * 3.5 * air)
 
 
-@dataclass(frozen=True)
-class MoistAir:
-    """Molecules of air and of vapour at the start, the vapour first.
+class MoistAir(NamedTuple):
+    """The molecules of moist air, the vapour first: ``mass`` and ``rotation : (molecule,)``."""
 
-    ``velocity : (molecule, axis)``, ``mass``, ``rotation`` and ``rotational_energy : (molecule,)``.
-    """
-
-    velocity: Array
     mass: Array
     rotation: Array
-    rotational_energy: Array
 
 
-def moist_air(molecules: int, vapour: int, rng: Source) -> MoistAir:
-    """Return molecules of moist air, some of them vapour, at kT = 1 to rounding and without total momentum.
+def moist_air(molecules: int, vapour: int) -> MoistAir:
+    """Return molecules of moist air.
 
     Parameters
     ----------
     molecules, vapour
         Number of molecules, and number of them that are vapour.
-    rng
-        Source of the random numbers.
 
     Examples
     --------
-    >>> from atmosbox.engine import RandomNumbers
-    >>> air = moist_air(100, 2, RandomNumbers(1))
-    >>> kinetic = 0.5 * float(np.sum(air.mass * np.sum(air.velocity**2, axis=1)))
-    >>> round(kinetic, 9), round(float(air.rotational_energy.sum()), 9)
+    >>> from atmosbox.engine import RandomNumbers, Start
+    >>> air = moist_air(100, 2)
+    >>> drawn = Start(100, WARM).draw(RandomNumbers(1), **air._asdict())
+    >>> kinetic = 0.5 * float(np.sum(air.mass * np.sum(drawn.velocity**2, axis=1)))
+    >>> round(kinetic, 9), round(float(drawn.rotational_energy.sum()), 9)
     (150.0, 101.0)
     """
     mass = np.ones(molecules)
     mass[:vapour] = law.WATER_MASS_RATIO
     rotation = np.full(molecules, float(DRY_AIR.rotational_dof))
     rotation[:vapour] = float(WATER.rotational_dof)
-    velocity = maxwell_velocities(1.0, mass, rng, exact=True)
-    spin = rotational_energies(1.0, rotation, rng)
-    if molecules:
-        spin *= 0.5 * rotation.sum() / spin.sum()
-    return MoistAir(velocity, mass, rotation, spin)
+    return MoistAir(mass, rotation)

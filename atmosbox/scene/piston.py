@@ -8,15 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.engine import Piston, Specular
-from atmosbox.scene.moisture import moist_air
+from atmosbox.engine import Piston, Scattered, Specular, Start
+from atmosbox.scene.moisture import WARM, moist_air
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import DRY_AIR
 
 if TYPE_CHECKING:
     from atmosbox.engine import FollowPressure, Liquid, Parcel
-    from atmosbox.engine.core.random import Source
     from atmosbox.scene.engines import EngineChoice
 
 __all__ = ["CLOSING", "FLATNESS", "free_time_of", "moist_parcel", "parcel_facts", "size_of_parcel"]
@@ -113,7 +112,6 @@ def moist_parcel(
     *,
     driver: FollowPressure,
     liquid: Liquid,
-    rng: Source,
     seed: int,
 ) -> Parcel:
     """Return moist air at kT = 1 under a piston, with its liquid; the other walls are smooth.
@@ -130,21 +128,16 @@ def moist_parcel(
         The driver of the piston.
     liquid
         The liquid water that the vapour can meet.
-    rng
-        Source of the random positions and velocities at the start.
     seed
-        Seed of the random numbers of the run.
+        Seed of the random numbers.
     """
-    gas = moist_air(molecules, vapour, rng)
-    length = tuple(sides + 1.0)
-    return engine.make(
-        engine.scatter(length, np.ones(molecules), rng),
-        gas.velocity,
-        length=length,
+    gas = moist_air(molecules, vapour)
+    return engine.begin(
+        Start(molecules, (*WARM, Scattered())),
+        length=tuple(sides + 1.0),
         walls=(Specular(),) * 5 + (Piston(),),
         mass=gas.mass,
         rotation=gas.rotation,
-        rotational_energy=gas.rotational_energy,
         seed=seed,
         driver=driver,
         liquid=liquid,

@@ -7,7 +7,7 @@ but a light molecule flies higher with the same energy. Each gas thins with heig
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Periodic, RandomNumbers, Specular, maxwell_velocities
+from atmosbox.engine import HeatBath, Maxwell, Periodic, Scattered, Specular, Start
 from atmosbox.scene import Air, Headline, Layers, Line, Panel, Scale, SceneSettings, Setup, block_average, setting
 from atmosbox.scene.instruments import Readings
 from atmosbox.theory.constants import BOLTZMANN
@@ -62,11 +62,8 @@ def build(settings, engine):
     scale = Scale(HEIGHT, MASSES["argon"], BOLTZMANN * si.temperature)
     argon = np.arange(2 * n) >= n
     mass = np.where(argon, 1.0, MASSES["helium"] / MASSES["argon"])
-    rng = RandomNumbers(settings.seed)
-    position = engine.scatter((1, 1, 1), np.full(2 * n, DIAMETER), rng, periodic=(True, True, False))
-    parcel = engine.make(
-        position,
-        maxwell_velocities(1.0, mass, rng),
+    parcel = engine.begin(
+        Start(2 * n, (Scattered(), Maxwell(1.0))),
         length=(1, 1, 1),
         walls=(Periodic(),) * 4 + (HeatBath(1.0), Specular()),
         mass=mass,

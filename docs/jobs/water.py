@@ -8,10 +8,10 @@ from jobs.drawing import BLUE, explain, save, sheet
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.engine import Mist
+from atmosbox.engine import Mist, Start
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.plot.theme import DARK, REFERENCE_COLOURS
-from atmosbox.scene.moisture import moist_air, water
+from atmosbox.scene.moisture import WARM, moist_air, water
 from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import Scale
 from atmosbox.simulation import runner
@@ -110,15 +110,16 @@ def isolated_box(seed: int) -> tuple[MoistParcelSet, Scale]:
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 293.15)
     small, vapour = 1e-3, WATERS // 2
     side = (vapour / float(theory.saturation_vapor_pressure(293.15) / scale.pressure)) ** (1.0 / 3.0)
-    gas, substance = moist_air(AIR + vapour, vapour, rng), replace(water(scale), diameter=small)
+    gas, substance = moist_air(AIR + vapour, vapour), replace(water(scale), diameter=small)
+    start = Start(AIR + vapour, WARM).draw(rng, **gas._asdict())
     box = MoistParcelSet(
         rng.uniform(small, side - small, (AIR + vapour, 3)),
-        gas.velocity,
+        start.velocity,
         length=(side,) * 3,
         mass=gas.mass,
         diameter=small,
         rotation=gas.rotation,
-        rotational_energy=gas.rotational_energy,
+        rotational_energy=start.rotational_energy,
         liquid=Mist(
             substance, number=WATERS - vapour, kT=1.0, nuclei=NUCLEI, area=20.0 * side * side
         ),

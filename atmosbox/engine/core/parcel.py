@@ -3,7 +3,7 @@
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, Protocol, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError
 from atmosbox.engine.core.saved_state import SavedState, pack, restore, save, unpack
 from atmosbox.engine.core.state import Tallies
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls
+
+if TYPE_CHECKING:
+    from atmosbox.engine.start.start import Start
 
 __all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
 
@@ -85,6 +88,9 @@ class Parcel(Adjustable):
 
     engine: ClassVar[str]
     """Name of the engine, as the command line and the output file give it."""
+
+    start: "Start | None" = None
+    """How the molecules started, if that was declared and the seed decides nothing else."""
 
     _frugal: ClassVar[bool] = False
     """Whether to save memory: a number given for all molecules is kept once, and velocities are not copied."""

@@ -5,4 +5,5 @@
 `clearing`   molecules that overlap a drop get new positions
 `lattice`    positions on a lattice
 `velocity`   velocities and rotational energies
+`start`      how molecules start, as data: which of these are drawn, and in which order
 """

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine import FollowPressure, Mist, RandomNumbers
+from atmosbox.engine import FollowPressure, Mist
 from atmosbox.scene.ascent.finite_size import drift, least_cloud
 from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
@@ -51,7 +51,6 @@ def rise(
     seed
         Seed of all random numbers.
     """
-    rng = RandomNumbers(seed)
     scale, n = ascent.scale, ascent.molecules
     _, sides, excess = ascent.box(ideal=engine.ideal)
     mean_free_time = ascent.mean_free_time(ideal=engine.ideal)
@@ -72,7 +71,7 @@ def rise(
         keeps=ascent.keeps,
         area=ascent.area * float(sides[0] * sides[1]),
     )
-    parcel = moist_parcel(engine, n, ascent.vapour, sides, driver=driver, liquid=mist, rng=rng, seed=seed)
+    parcel = moist_parcel(engine, n, ascent.vapour, sides, driver=driver, liquid=mist, seed=seed)
     lasted = duration * scale.time
     environment = Environment(
         height=lambda time: height(min(time / lasted, 1.0)),

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
-    from atmosbox.engine import Parcel
+    from atmosbox.engine import Parcel, Start
     from atmosbox.engine.core.random import Source
 
 __all__ = ["EXACT", "FEW", "EngineChoice", "choose", "names", "suited", "used"]
@@ -102,6 +102,41 @@ class EngineChoice:
 
             return DescribedParcel(position, velocity, **box)
         return kind()(position, velocity, **self.options, **box)
+
+    def begin(self, start: Start, *, rng: Source | None = None, **box: Any) -> Parcel:
+        """Return a parcel of this engine whose molecules start as declared.
+
+        Parameters
+        ----------
+        start
+            How the molecules start.
+        rng
+            Random numbers of which some have been drawn, if more than the start depends on the seed; otherwise those of
+            the seed of the box.
+        **box
+            The other arguments of `make`.
+
+        Examples
+        --------
+        >>> from atmosbox.engine import Maxwell, Scattered, Start
+        >>> EXACT.begin(Start(20, (Scattered(), Maxwell(1.0))), length=(5, 5, 5), seed=1).number
+        20
+        """
+        from atmosbox.engine import Periodic, RandomNumbers
+
+        walls = [isinstance(wall, Periodic) for wall in box.get("walls", ())]
+        x, y, z = (*walls, *[False] * 6)[:6:2]
+        drawn = start.draw(
+            RandomNumbers(box.get("seed", 0)) if rng is None else rng,
+            periodic=(x, y, z),
+            apart=not self.described,
+            **{name: box[name] for name in ("length", "diameter", "mass", "rotation", "planar") if name in box},
+        )
+        if drawn.rotational_energy is not None:
+            box["rotational_energy"] = drawn.rotational_energy
+        parcel = self.make(drawn.position, drawn.velocity, **box)
+        parcel.start = start if rng is None else None
+        return parcel
 
 
 def names() -> tuple[str, ...]:
