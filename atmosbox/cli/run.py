@@ -26,7 +26,7 @@ from atmosbox.cli.option import (
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, FileError, PhysicsError, SettingError
+from atmosbox.errors import AtmosboxError, FileError, PhysicsError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     "atmosbox run --config lift.toml --dry-run",
     "atmosbox run temperature --accuracy sketch",
     "atmosbox run --resume lifting-dry.part.nc",
+    'atmosbox run --replay "https://example.org/temperature-lab.html#atmosbox=..."',
 )
 def run(
     ctx: typer.Context,
@@ -62,6 +63,12 @@ def run(
             "--save-molecules/--no-save-molecules",
             help="Save place and velocity of every molecule, in every frame.  [default: if they take less than 10 MB]",
             show_default=False,
+        ),
+    ] = None,
+    replay: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LINK", help="Run what the lab page ran, with every turn of its knobs: the link in quotes."
         ),
     ] = None,
     resume: Annotated[
@@ -90,14 +97,19 @@ def run(
     from atmosbox.simulation.expected_time import expected_time
 
     restart = None
-    if resume is None:
+    given: dict[str, object] = {"--set": values, "--config": config, "--from": source, "--seed": seed}
+    given |= {"--engine": engine, "--accuracy": accuracy}
+    if resume is None and replay is None:
         prepared = checked(gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy))
         default = for_scene(prepared.scene)
+    elif resume is None:
+        runner.check_nothing_changes("a run that is replayed", given)
+        with prints_to_stderr():
+            prepared = runner.replayed(str(replay), scene, save_molecules=save_molecules)
+        default = for_scene(prepared.scene)
     else:
-        given = {"set": values, "config": config, "from": source, "seed": seed, "engine": engine, "accuracy": accuracy}
-        for name, value in (given | {"save-molecules": save_molecules}).items():
-            if value is not None and value != []:
-                raise SettingError(f"--{name}", None, "cannot change a run that goes on", "leave it out")
+        given |= {"--replay": replay, "--save-molecules": save_molecules}
+        runner.check_nothing_changes("a run that goes on", given)
         from atmosbox.simulation.restart import read_state
 
         restart = read_state(resume)
@@ -117,7 +129,7 @@ def run(
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
     try:
-        hint = None if restart is not None else expected_time(prepared)
+        hint = None if restart is not None or replay is not None else expected_time(prepared)
         words = "" if hint is None else str(hint)
         with prints_to_stderr(), progress(prepared.scene, quiet=quiet, expected=words) as show:
             outcome = runner.execute(

@@ -14,8 +14,9 @@ __all__ = ["open", "resume", "run"]
 
 
 def run(
-    scene: str | os.PathLike[str],
+    scene: str | os.PathLike[str] | None = None,
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -34,6 +35,9 @@ def run(
     ----------
     scene
         Name of a scene, such as ``"lifting-dry"`` (`atmosbox.scenes` lists them), or the path of your own.
+    replay
+        Link of a run in the lab page, as a whole or from ``#`` on, in place of scene and settings: the same run, with
+        every turn of its knobs.
     out
         File to write the dataset to, as CF netCDF; by default none is written.
     force
@@ -90,10 +94,11 @@ def run(
     from atmosbox.interface.run_dataset import as_run
     from atmosbox.simulation.runner import run as start
 
-    with progress_bar(os.fspath(scene), progress) as show:
+    with progress_bar("replay" if scene is None else os.fspath(scene), progress) as show:
         return as_run(
             start(
                 scene,
+                replay=replay,
                 out=out,
                 force=force,
                 progress=show,

@@ -18,7 +18,6 @@ from atmosbox.lab.moist_plan import (
     WET_STATE,
     fixed_axes,
     leaving_energies,
-    moist_knob,
     planned_alone,
     water_readings,
 )
@@ -32,9 +31,11 @@ from atmosbox.page.control import knob_controls
 from atmosbox.page.gauge import gauges
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.page_panel import declared
-from atmosbox.scene.conversion import to_si
-from atmosbox.scene.instruments import MOMENTS, Lift, MoistLift
+from atmosbox.scene.conversion import declared_unit
+from atmosbox.scene.instruments import MOMENTS, Lift
 from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.replay import link_start
+from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:
     from atmosbox.page import Stage
@@ -51,7 +52,6 @@ _WHOLE = 60.0
 _SOON = 30.0
 """Least time that the usual pace takes for the run of air that turns over [s], so that rolls are soon seen."""
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
-_WAY = 401
 _SLOWEST = 0.15
 """Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
 _FIGURES = 4
@@ -148,6 +148,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "knobs": numbers,
         "units": {},
         "command": _command(prepared),
+        "link": link_start(prepared),
         "seeded": is_seeded,
         "seed": prepared.settings.seed,
     }
@@ -317,33 +318,34 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     kept = [knob for knob in setup.knobs if knob.name in _KNOBS and box.prepared.scene in SCENES]
     numbers: dict[str, Any] = {}
     for knob in kept:
-        zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)
-        told: dict[str, Any] = {"factor": one - zero, "offset": zero}
-        if hasattr(setup.parcel, "vapour") and knob.name in ("temperature", "open_pool"):
-            told = moist_knob(knob, told, setup.scale)
-        elif knob.name.endswith("temperature"):
-            unit = setup.scale.temperature
-            bath = box.attracts and has_bath(setup)
-            kernel, argument = ("warm_bath", "1") if bath else ("warm_walls", "3")
-            told = {"kernel": kernel, "argument": argument, "factor": (one - zero) / unit, "offset": zero / unit}
+        unit = declared_unit(knob.unit)
+        told: dict[str, Any] = {"up": unit.up, "down": unit.down, "offset": unit.offset, "times": 1.0, "over": 1.0}
+        is_wet = hasattr(setup.parcel, "vapour")
+        if knob.name.endswith("temperature"):
+            kernel, argument = ("warm_bath", "1") if box.attracts and has_bath(setup) else ("warm_walls", "3")
+            told |= {"kernel": kernel, "argument": argument, "times": BOLTZMANN, "over": setup.scale.energy}
+            if is_wet:
+                told["argument"] = "4"
+                told |= {} if knob.leave is None else {"leave": "smooth_walls", "rounds": True}
             if knob.wall is not None:
                 told["walls"] = {"1": knob.wall, "2": knob.wall + 1}
         elif knob.name == "attraction":
-            told = {"kernel": "attract", "argument": "3", "factor": 1.0, "offset": 0.0}
-        elif knob.name == "way":  # a part of its time
-            told = {"kernel": "lead", "argument": "3", "factor": (one - zero) * setup.duration, "offset": 0.0}
-        else:  # a height is converted to a moment of the ascent
-            told |= {"kernel": "lead", "argument": "3", **_moments(setup)}
+            told |= {"kernel": "attract", "argument": "3"}
+        elif knob.name == "open_pool":
+            told |= {"kernel": "cover_pool", "argument": "2"}
+        else:  # a part of the way, or a height; both are converted to a moment of the ascent
+            told |= {"kernel": "lead", "argument": "3", "end": _end(setup)}
+            if knob.places is not None:
+                heights, shares = knob.places
+                told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}
         numbers[knob.name] = told
     return kept, numbers
 
 
-def _moments(setup: Setup) -> dict[str, Any]:
-    """Return a table of moments of the planned ascent and heights of the parcel [m]."""
-    moments = np.linspace(0.0, setup.duration, _WAY)
-    around = next(each.environment for each in setup.instruments if isinstance(each, Lift | MoistLift))
-    heights = [around.height(t * setup.scale.time) for t in moments.tolist()]
-    return {"grid": plain(heights), "curves": {"to": plain(moments)}}
+def _end(setup: Setup) -> float:
+    """Return the last moment of the planned ascent."""
+    parcel: Any = setup.parcel
+    return float(parcel._driver.course.end)
 
 
 def _command(prepared: Prepared) -> str:

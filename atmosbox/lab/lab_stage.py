@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.file.variables import known
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
 from atmosbox.scene.conversion import phrase, to_si
 from atmosbox.scene.instruments import Environment, wall_laws
+from atmosbox.scene.panels import without_headlines
 from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
 
@@ -61,14 +61,10 @@ def running_panels(prepared: Prepared) -> tuple[Panel, ...]:
 
 
 def _running(panel: Panel) -> Panel | None:
-    """Return a panel without curves that come from headlines; None if nothing is left."""
-    if panel.kind == "discs":
-        return panel
-    lines = tuple(line for line in panel.lines if all(known(name.partition("[")[0]) for name in line.variables))
-    if not lines:
-        return None
-    evenly = {"x_scale": "linear"} if all(line.x == _TIME for line in lines) else {}
-    return replace(panel, lines=lines, headlines=(), **evenly)  # type: ignore[arg-type]
+    """Return a panel without curves that come from headlines, and with linear time; None if nothing is left."""
+    found = without_headlines(panel)
+    evenly = found is not None and found.lines and all(line.x == _TIME for line in found.lines)
+    return replace(found, x_scale="linear") if found is not None and evenly else found
 
 
 def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tuple[Stage, float]:

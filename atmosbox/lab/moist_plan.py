@@ -1,4 +1,4 @@
-"""The part of the plan of a page that is about water: readings, knobs, and the curves of theory."""
+"""The part of the plan of a page that is about water: readings, and the curves of theory."""
 
 from __future__ import annotations
 
@@ -22,14 +22,12 @@ if TYPE_CHECKING:
 
     from atmosbox.scene.knob import Knob
     from atmosbox.scene.setup import Setup
-    from atmosbox.scene.units import Scale
 
 __all__ = [
     "DROP_STATE",
     "WET_STATE",
     "fixed_axes",
     "leaving_energies",
-    "moist_knob",
     "moist_tables",
     "planned_alone",
     "water_readings",
@@ -119,18 +117,6 @@ def planned_alone(box: LabBox) -> list[str]:
         return []
     mixing = [f"{name}_mixing_ratio_theory" for name in ("humidity", "cloud_liquid_water", "rain")]
     return ["adiabat_temperature", *mixing]
-
-
-def moist_knob(knob: Knob, told: dict[str, float], scale: Scale) -> dict[str, Any]:
-    """Return the kernel that a knob of a box with liquid calls, and the conversion of its value.
-
-    ``leave`` names the kernel that restores the state before the knob was first turned.
-    """
-    if knob.name == "open_pool":
-        return {"kernel": "cover_pool", "argument": "2", **told}
-    unit = scale.temperature
-    found = {"kernel": "warm_walls", "argument": "4", **{name: value / unit for name, value in told.items()}}
-    return found | ({"leave": "smooth_walls"} if knob.leave is not None else {})
 
 
 def moist_tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from atmosbox.engine.core.course import interpolate
 from atmosbox.scene.conversion import from_si, to_si
 from atmosbox.scene.rounding import rounded
 
@@ -46,6 +47,8 @@ class Knob:
         Function that restores the box as it was before the knob was first turned; None if turning it to `value` does.
     wall
         The number of the wall whose temperature it sets; None for all walls, or for another property.
+    places
+        For a knob that moves a parcel to a height: heights [m], increasing, and the share of the path at each.
 
     Raises
     ------
@@ -69,6 +72,7 @@ class Knob:
     turn: Callable[[float], None]
     leave: Callable[[], None] | None = None
     wall: int | None = None
+    places: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     def __post_init__(self) -> None:
         if not self.low <= self.value <= self.high:
@@ -224,13 +228,15 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
     ('altitude', 'km', True)
     """
     shares = np.linspace(0.0, 1.0, 401)
-    heights = np.array([height(float(share)) for share in shares])
+    # seven digits, as in the page, which finds the same place to the last bit
+    heights = np.array([float(f"{height(float(share)):.7g}") for share in shares])
 
     def turn(metres: float) -> None:
-        _lead(parcel, driver, rounded(float(np.interp(metres, heights, shares))))
+        _lead(parcel, driver, rounded(float(interpolate(metres, heights, shares))))
 
     low, high = (from_si(float(h), "km") for h in (heights[0], heights[-1]))
-    return Knob("altitude", "height to which the parcel moves", "km", low, high, high, turn)
+    places = tuple(heights.tolist()), tuple(shares.tolist())
+    return Knob("altitude", "height to which the parcel moves", "km", low, high, high, turn, places=places)
 
 
 def way(parcel: Parcel, driver: FollowPressure) -> Knob:
@@ -252,6 +258,8 @@ def way(parcel: Parcel, driver: FollowPressure) -> Knob:
 def _lead(parcel: Parcel, driver: FollowPressure, share: float) -> None:
     """Make a parcel move to a place on its path, given as a share of the path."""
     course = driver.course
+    if not course.led:
+        course.lead(0.0, course.end)  # as planned, but interpolated as in the page, to the last bit
     course.lead(parcel.time, min(max(share, 0.0), 1.0) * course.end)
 
 

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox import scenarios
 from atmosbox.engine import PackingError as EnginePackingError
@@ -22,6 +22,9 @@ from atmosbox.scene.spelling import field_name
 from atmosbox.simulation import accuracy as accuracies
 from atmosbox.simulation.accuracy import Expectation
 from atmosbox.version import __version__
+
+if TYPE_CHECKING:
+    from atmosbox.simulation.replay import Replay
 
 __all__ = ["Card", "Prepared", "build", "card", "keeps_molecules", "prepare", "usual_engine"]
 
@@ -42,6 +45,8 @@ class Prepared:
     expectation: Expectation | None = None
     stated: Mapping[str, Any] | None = None
     """For a resumed run, the errors that were expected when it began."""
+    replay: Replay | None = None
+    """For the run of a link, how long it is, and the turns of its knobs."""
 
     @property
     def unusual_engine(self) -> str:
@@ -66,7 +71,12 @@ class Prepared:
             "version": __version__,
             "save_molecules": self.save_molecules,
             **known,
+            **({} if self.replay is None else {"replay": self.replay.link}),
         }
+
+    def frames(self, setup: Setup) -> int:
+        """Return the number of frames of the run: those of the scene, or of the link."""
+        return setup.frames if self.replay is None else self.replay.length(setup)
 
 
 class Card(NamedTuple):
@@ -208,19 +218,19 @@ def build(prepared: Prepared) -> Setup:
         box = f"The box of {prepared.scene}" if where is None else f"{where}: the box"
         raise EngineError(f"{box} cannot be built: {error}.") from error
     if prepared.save_molecules:
-        needed = _space(setup)
+        needed = _space(prepared, setup)
         if needed > _MEMORY:
             raise SettingError(
                 "molecules", setup.parcel.present.size,
-                f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
+                f"saved in {prepared.frames(setup)} frames would take {needed / 1e9:.0f} GB",
                 "leave out ", Option("save_molecules", True), ", or take fewer molecules"
             )  # fmt: skip
     return setup
 
 
-def _space(setup: Setup) -> float:
+def _space(prepared: Prepared, setup: Setup) -> float:
     """Return the space that all molecules of a run take: position, velocity and speed in single precision."""
-    return 28.0 * setup.parcel.present.size * setup.frames
+    return 28.0 * setup.parcel.present.size * prepared.frames(setup)
 
 
 def keeps_molecules(prepared: Prepared, setup: Setup) -> bool:
@@ -230,4 +240,4 @@ def keeps_molecules(prepared: Prepared, setup: Setup) -> bool:
     """
     if prepared.save_molecules is not None:
         return prepared.save_molecules
-    return _space(setup) < _SMALL and not any(isinstance(each, Discs) for each in setup.instruments)
+    return _space(prepared, setup) < _SMALL and not any(isinstance(each, Discs) for each in setup.instruments)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import signal
 import threading
 import time
@@ -14,6 +15,7 @@ import numpy as np
 
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Instrument, Molecules, Readings
+from atmosbox.scene.panels import from_json, to_json, without_headlines
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared, keeps_molecules
 from atmosbox.simulation.verification import with_bias
@@ -67,6 +69,8 @@ class Recording:
     times: list[float] = field(default_factory=lambda: [0.0])
     busy: float = 0.0
     sampled: int = 0
+    turned: int = 0
+    """Number of turns of knobs that were made, of those of the link."""
     instruments: tuple[Instrument, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -98,6 +102,7 @@ class Recording:
         parcel = self.setup.parcel
         frame = self.frames
         snapshot: Snapshot | None = None
+        self._turn_knobs()
         for sample in range(self.sampled + 1, self.setup.samples + 1):
             busy = time.process_time()
             parcel.advance(max(self.setup.moment(frame, sample), parcel.time), watch)
@@ -105,6 +110,18 @@ class Recording:
             snapshot = parcel.snapshot()
             self.sample(snapshot)
         self.end_frame(parcel.snapshot() if snapshot is None else snapshot)
+
+    def _turn_knobs(self) -> None:
+        """Turn the knobs that the link of the run turns before this frame."""
+        replay = self.prepared.replay
+        if replay is None:
+            return
+        knobs = {knob.name: knob for knob in self.setup.knobs}
+        with uninterrupted():
+            while self.turned < len(replay.turns) and replay.turns[self.turned].frame <= self.frames:
+                turn = replay.turns[self.turned]
+                knobs[turn.name].reset() if turn.value is None else knobs[turn.name].set(turn.value)
+                self.turned += 1
 
     def dataset(
         self, status: str, *, settle: int | None = None, judged: bool = True
@@ -116,9 +133,10 @@ class Recording:
         status
             State of the run, for the attribute of that name.
         settle
-            Number of frames that averages leave out; None for the number that the scene sets.
+            Number of frames that averages leave out; None for the number that the scene sets, after the last turn of a
+            knob.
         judged
-            Whether to compute the scene's headlines.
+            Whether to compute the scene's headlines; there are none if a knob was turned.
         """
         from atmosbox.file.dataset import dataset, extended
         from atmosbox.file.declaration import Variable
@@ -131,7 +149,10 @@ class Recording:
         in_unit = setup.scale.time / {"s": 1.0, "ns": 1e-9, "ps": 1e-12}[setup.time_unit]
         times = np.array(self.times) * in_unit
         readings = Readings()
-        rest = min(setup.settle if settle is None else settle, max(self.frames - 2, 0))
+        turns = () if self.prepared.replay is None else self.prepared.replay.turns[: self.turned]
+        last = turns[-1].frame if turns else 0
+        rest = min(last + setup.settle if settle is None else settle, max(self.frames - 2, 0))
+        judged = judged and not turns
         for instrument in self.instruments:
             readings.update(instrument.readings(setup.scale, rest))
         binned = ("height", "speed", "energy", "distance")
@@ -139,7 +160,7 @@ class Recording:
         coords = {name: readings.pop(name) for name in names if name in readings}
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
-        attributes = self.attributes | {"atmosbox_status": status}
+        attributes = self.attributes | {"atmosbox_status": status} | (self._of_turns() if turns else {})
         measured = dataset(readings, coords, attributes, time_unit=setup.time_unit, own=own)
         if self.frames < 2:
             return measured, ()
@@ -156,6 +177,19 @@ class Recording:
             headlines = with_bias(headlines, self.prepared.parameters)
             return extended(full, {}, headlines), headlines
         except (ArithmeticError, LookupError, ValueError):
-            if status == "complete":
+            if status == "complete" and self.prepared.replay is None:
                 raise
             return measured, ()  # too short for its theory, but worth keeping
+
+    def _of_turns(self) -> dict[str, Any]:
+        """Return the attributes of a run in which knobs were turned: the turns, and panels without headlines."""
+        replay, found = self.prepared.replay, dict(self.attributes)
+        if replay is None:
+            return {}
+        told = replay.about(self.setup, self.frames)
+        panels = map(without_headlines, from_json(found["atmosbox_panels"])) if "atmosbox_panels" in found else ()
+        return {
+            "atmosbox_turns": json.dumps(told["turns"]),
+            "atmosbox_panels": to_json(panel for panel in panels if panel is not None),
+            "comment": f"{told['words']} {found.get('comment', '')}".strip(),
+        }

@@ -133,6 +133,7 @@ def with_state(dataset: xr.Dataset, recording: Recording, seconds: float) -> xr.
         "instruments": [coder.attributes(each, f"instrument {k + 1}") for k, each in enumerate(recording.instruments)],
         "times": coder.code(list(recording.times), "times"),
         "sampled": recording.sampled,
+        "turned": recording.turned,
         "busy": recording.busy,
         "seconds": seconds,
     }
@@ -211,6 +212,7 @@ def put_back(restart: Restart, recording: Recording) -> float:
             _into(vars(each), codes, arrays)
         recording.times = [float(time) for time in tree["times"]]
         recording.sampled = int(tree["sampled"])
+        recording.turned = int(tree["turned"])
         recording.busy = float(tree["busy"])
         return float(tree["seconds"])
     except (RefusedError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:

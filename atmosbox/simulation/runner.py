@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from atmosbox.engine import StalledError
-from atmosbox.errors import Command, EngineError, FileError, Option, SoundingError
+from atmosbox.engine import RefusedError, StalledError
+from atmosbox.errors import Command, EngineError, FileError, Option, SoundingError, UnknownSceneError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
@@ -18,6 +18,7 @@ from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
+from atmosbox.simulation.replay import check_nothing_changes, read_link, replayed
 from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, from_file, put_back, read_state, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
@@ -35,10 +36,12 @@ __all__ = [
     "Prepared",
     "build",
     "card",
+    "check_nothing_changes",
     "execute",
     "headlines_of",
     "prepare",
     "prepared_again",
+    "replayed",
     "resume",
     "run",
     "verify",
@@ -151,11 +154,14 @@ def _execute(
             raise SoundingError(sentence[:-1], "correct it, or leave ", Option("strict"), " out")
         if restart is None:
             warnings.warn(sentence, stacklevel=3)
+    if prepared.replay is not None:
+        prepared.replay.check(setup)
+    frames = prepared.frames(setup)
     recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
     last = spent = 0.0
     if restart is not None:
         spent = put_back(restart, recording)
-        if recording.frames >= setup.frames:
+        if recording.frames >= frames:
             raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
     warned = False
 
@@ -163,7 +169,7 @@ def _execute(
         nonlocal last
         if time.perf_counter() - last > _BREATH:
             last = time.perf_counter()
-            tell(min(now / setup.duration, 1.0), "running")
+            tell(min(now / (frames * setup.frame), 1.0), "running")
 
     def outcome(status: str) -> Outcome:
         dataset, headlines = recording.dataset(status)
@@ -184,16 +190,16 @@ def _execute(
             return dataset
 
     try:
-        while recording.frames < setup.frames:
+        while recording.frames < frames:
             began = time.perf_counter()
             recording.advance(watch)
             spent += time.perf_counter() - began
             watch(setup.parcel.time)
-            if checkpoint is not None and recording.frames < setup.frames:
+            if checkpoint is not None and recording.frames < frames:
                 checkpoint(lambda: resumable(recording.dataset("partial")[0]))
         tell(1.0, "done")
         done = outcome("complete")
-    except StalledError as error:
+    except (StalledError, RefusedError) as error:
         raise EngineError(f"The run of {prepared.scene} cannot go on: {error}.") from error
     except KeyboardInterrupt as stop:
         partial = outcome("interrupted") if recording.frames else None
@@ -204,7 +210,8 @@ def _execute(
     if checkpoint is not None:
         with uninterrupted():
             checkpoint.finish(done.dataset)
-    remember_pace(prepared, done.engine_seconds)
+    if prepared.replay is None:
+        remember_pace(prepared, done.engine_seconds)
     return done
 
 
@@ -227,8 +234,9 @@ def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart
 
 
 def run(
-    scene: str | os.PathLike[str],
+    scene: str | os.PathLike[str] | None = None,
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Progress | None = None,
@@ -242,7 +250,9 @@ def run(
     Parameters
     ----------
     scene
-        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
+        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own; None if a link names it.
+    replay
+        The link of a run in the page: its scene, its settings and every turn of a knob, see `replayed`.
     out
         Path of the netCDF file; nothing is written without it.
     force
@@ -277,12 +287,20 @@ def run(
     """
     from atmosbox.file.checkpoint import Checkpoint
 
-    prepared = prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=save_molecules)
+    given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
+    if replay is not None:
+        check_nothing_changes("a run that is replayed", given)
+        prepared = replayed(replay, scene, save_molecules=save_molecules)
+        given = {"replay": replay}
+    elif scene is None:
+        raise UnknownSceneError("No scene is given", Command("list"), " to see all")
+    else:
+        prepared = prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=save_molecules)
     checkpoint = None
     if out is not None:
         checkpoint = Checkpoint(out, force=force)
-    given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
-    words = ", ".join([repr(str(scene)), *(f"{name}={value!r}" for name, value in given.items())])
+    named = [] if scene is None else [repr(str(scene))]
+    words = ", ".join([*named, *(f"{name}={value!r}" for name, value in given.items())])
     return execute(prepared, checkpoint=checkpoint, progress=progress, command=f"atmosbox.run({words})").dataset
 
 
@@ -317,7 +335,8 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
         engine=str(made["engine"]),
         save_molecules=made["save_molecules"],
     )
-    return replace(prepared, expectation=None, stated=made.get("accuracy"))
+    again = read_link(made["replay"])[2] if "replay" in made else None
+    return replace(prepared, expectation=None, stated=made.get("accuracy"), replay=again)
 
 
 def resume(

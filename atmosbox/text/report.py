@@ -93,10 +93,10 @@ def headline_tables(headlines: Sequence[Headline]) -> list[tuple[list[str], list
     Examples
     --------
     >>> headline_tables([])[0][2]
-    ['No frame is late enough for an average.']
+    ['No mean of this run is compared with theory: it is too short, or a knob was turned.']
     """
     if not headlines:
-        return [([], [], ["No frame is late enough for an average."])]
+        return [([], [], ["No mean of this run is compared with theory: it is too short, or a knob was turned."])]
     rows = [_row(each) for each in headlines if each.resolved and not each.program]
     header = ["quantity", "measured", "theory", "difference", "expected within", "agrees?"]
     filled = [k for k in range(len(header)) if k < 2 or any(row[k] for row in rows)]

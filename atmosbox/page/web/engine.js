@@ -18,10 +18,11 @@ export class Engine {
       else if (data.type === "file") save(data.name, data.text);
       else if (data.type === "plan") this.#plan(data.settings);
       else if (data.type === "digest") document.body.dataset.digest = data.sha256;
+      else if (data.type === "link") document.body.dataset.link = data.link;
       else hear(data);
     };
     this.worker.onerror = ({ message }) => hear({ type: "note", level: "error", text: message });
-    this.say({ type: "begin", served: read("plans") !== undefined, starts: JSON.parse(read("starts")), module: read("module"), stored: read("stored") });
+    this.say({ type: "begin", served: read("plans") !== undefined, link: location.hash, starts: JSON.parse(read("starts")), module: read("module"), stored: read("stored") });
     document.addEventListener("visibilitychange", () => this.say({ type: "watched", is: !document.hidden }));
     document.addEventListener("ask", ({ detail }) => this.say(detail)); // used by tests
   }

@@ -76,6 +76,11 @@ class Starts {
     return this.found.has(key);
   }
 
+  // The key of the first start whose plan fits.
+  find(fits) {
+    return [...this.found.keys()].find((key) => fits(this.found.get(key)().plan));
+  }
+
   async machine(key) {
     return Machine.of(this.module, this.found.get(String(key))());
   }

@@ -12,16 +12,21 @@ const DRAG = 1500; // ms within which movements of a slider are one change
 const STEP = 0.04; // real time that one step shows [s]
 const SLOWEST = 0.25, FASTEST = 16;
 const [DONE, BUSY] = [0, 1];
+const MOST_TURNS = 5000, LONGEST = 1_000_000; // turns of knobs, and frames, that a link can hold
+const LINK = /^#(atmosbox=([\w.+-]+)&scene=([\w.%~-]+)([\w.%~&=-]*))&seed=(\d{1,16})(?:&turns=([\w:,.+-]+))?&frames=(\d{1,7})&end$/;
+const TURN = /^(\d{1,7}):(\w+):(start|-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)$/;
 const WHY = { 2: "events pile up without end", 3: "more molecules have come together than its cells have room for",
   4: "the piston would crush the molecules", 5: "a molecule that evaporates finds no free place" };
 
 const say = (message) => postMessage(message);
+// A number rounded to 32 binary digits: see atmosbox/scene/rounding.py.
+const rounded = (x) => x * (2 ** 21 + 1) - (x * (2 ** 21 + 1) - x);
 const refuse = (text) => say({ type: "note", level: "error", text });
 
 class Box {
   // `served` says whether Python serves the page, and makes plans of other boxes.
   constructor(starts, machine, served) {
-    Object.assign(this, { starts, served, start: starts.first, past: [], playing: false, pace: 1, watched: true, turned: [], seed: machine.plan.seed });
+    Object.assign(this, { starts, served, start: starts.first, past: [], playing: false, pace: 1, watched: true, pending: new Map(), seed: machine.plan.seed });
     this.take(machine);
     this.begin();
     this.greet();
@@ -50,9 +55,10 @@ class Box {
     if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
     machine.call("begin");
     machine.call("begin_averages_anew");
-    Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], pictures: [],
+    Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], pictures: [], inside: false, coming: [],
       past: this.past.filter(({ start }) => start !== undefined),
       fastest: this.plan.fastest, trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
+    this.pending.clear();
     this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
   }
 
@@ -107,6 +113,7 @@ class Box {
   pass(goal, deadline) {
     const { machine } = this;
     while (this.now < goal) {
+      if (!this.inside) this.turnKnobs();
       const due = this.moment(), until = Math.min(goal, due);
       machine.set("pass_time", "4", until);
       machine.set("pass_time", "5", BigInt(EVENTS));
@@ -134,7 +141,7 @@ class Box {
     this.sample += 1;
     if (this.sample <= plan.samples) return true;
     machine.call("end_frame");
-    Object.assign(this, { frame: this.frame + 1, sample: 1, fresh: true });
+    Object.assign(this, { frame: this.frame + 1, sample: 1, fresh: true, inside: false });
     if (this.frame - this.since > plan.settle) machine.call("note_frame");
     const reading = machine.array("gauges.reading"), row = {};
     for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
@@ -247,6 +254,7 @@ class Box {
     else if (type === "set") this.turn(name, value);
     else if (type === "undo") await this.undo();
     else if (type === "save") this.save();
+    else if (type === "link") say({ type, link: this.link() });
     else if (type === "watched") this.watched = message.is;
     else if (type === "frames") {
       while (this.frame < value && !this.failed) this.pass(this.moment(), Infinity);
@@ -336,7 +344,7 @@ class Box {
   }
 
   turn(name, asked) {
-    const control = this.told.controls.find((each) => each.name === name);
+    const control = this.control(name);
     const value = typeof asked === "string" && asked.trim() === "" ? NaN : Number(asked);
     if (!control || !(value >= control.low && value <= control.high)) {
       refuse(control ? `${name} = ${asked} is no number from ${control.low} to ${control.high} ${control.unit}: give one of these.`
@@ -345,28 +353,53 @@ class Box {
     }
     const last = this.past.at(-1), now = performance.now();
     if (last?.name === name && now - last.when < DRAG) last.when = now;
-    else this.past.push({ name, value: this.knobs[name], when: now });
+    else this.past.push({ name, value: this.pending.has(name) ? this.pending.get(name) : this.given(name), when: now });
     if (this.past.length > 200) this.past.shift();
-    this.act(control, value);
+    this.ask(name, value);
   }
 
-  // Set a knob to a value, or give it up so that the box is as before its first change.
-  act(control, value, leaves = false) {
-    const { name, unit } = control, knob = this.plan.knobs[name];
-    if (leaves && knob.leave) this.machine.call(knob.leave);
-    else {
-      const asked = value * knob.factor + knob.offset;
-      for (const [argument, wall] of Object.entries(knob.walls ?? {})) this.machine.set(knob.kernel, argument, BigInt(wall));
-      this.machine.set(knob.kernel, knob.argument, knob.grid ? between(knob, asked).to : asked);
-      this.machine.call(knob.kernel);
-    }
-    this.machine.call("begin_averages_anew");
-    this.since = this.frame + 1;
-    this.led = true;
-    this.knobs[name] = value;
+  // Turn a knob as soon as the next frame begins; `value` is null to restore the state before its first turn.
+  ask(name, value) {
+    this.pending.delete(name);
+    if (value !== null || this.given(name) !== null) this.pending.set(name, value);
+    this.knobs[name] = value ?? this.control(name).value;
+    this.coming = []; // from now on the reader turns the knobs, and no longer a link
     if (this.finished) Object.assign(this, { playing: true, finished: false }); // it had stopped only at the end of its ascent
-    this.turned.push(`# in frame ${this.frame + 1}, at ${this.now * this.plan.time} ${this.told.stage.time.unit}: ${name} = ${value} ${unit}`);
-    if (this.turned.length > 5000) this.turned.shift();
+    say({ type: "controls", controls: this.controls() });
+  }
+
+  // The value to which a knob was last turned; null if it is as at the start.
+  given(name) {
+    return this.turned.findLast((each) => each.name === name)?.value ?? null;
+  }
+
+  control(name) {
+    return this.told.controls.find((each) => each.name === name);
+  }
+
+  // Before a frame, turn the knobs that a link names for it, and those that the reader has moved.
+  turnKnobs() {
+    this.inside = true;
+    while (this.coming[0]?.frame === this.frame) this.act(this.coming[0].name, this.coming.shift().value);
+    for (const [name, value] of this.pending) this.act(name, value);
+    this.pending.clear();
+  }
+
+  // Set a knob to a value in the units of the engine, by the same operations as Python, to the last bit.
+  act(name, value) {
+    const { machine, frame } = this, knob = this.plan.knobs[name], asked = value ?? this.control(name).value;
+    if (value === null && knob.leave) machine.call(knob.leave);
+    else {
+      const si = asked * knob.up / knob.down + knob.offset;
+      const found = knob.grid ? between(knob, si).to : si * knob.times / knob.over;
+      for (const [argument, wall] of Object.entries(knob.walls ?? {})) machine.set(knob.kernel, argument, BigInt(wall));
+      machine.set(knob.kernel, knob.argument, (knob.rounds ? rounded(found) : found) * (knob.end ?? 1));
+      machine.call(knob.kernel);
+    }
+    machine.call("begin_averages_anew");
+    Object.assign(this, { since: frame, led: true });
+    this.knobs[name] = asked;
+    if (this.turned.length <= MOST_TURNS) this.turned.push({ frame, name, value });
     say({ type: "controls", controls: this.controls() });
   }
 
@@ -378,8 +411,7 @@ class Box {
       return;
     }
     this.past.pop();
-    const isFirst = !this.past.some(({ name }) => name === last.name);
-    this.act(this.told.controls.find(({ name }) => name === last.name), last.value, isFirst);
+    this.ask(last.name, last.value);
   }
 
   // The command that begins the same run; its last word is the seed.
@@ -387,11 +419,61 @@ class Box {
     return this.plan.seeded ? this.plan.command.replace(/\d+$/, this.seed) : this.plan.command;
   }
 
+  // The text after # in an address that replays this run; null if it has become too long.
+  link() {
+    const next = this.frame + (this.inside ? 1 : 0), { pending } = this;
+    const turned = [...this.turned, ...Array.from(pending, ([name, value]) => ({ frame: next, name, value }))];
+    if (turned.length > MOST_TURNS || this.frame > LONGEST) return null;
+    const turns = turned.map(({ frame, name, value }) => `${frame}:${name}:${value ?? "start"}`).join();
+    return `#${this.plan.link}&seed=${this.seed}${turns && "&turns="}${turns}&frames=${this.frame}&end`;
+  }
+
+  // Begin the run of a link, whose knobs turn by themselves.
+  async open(link) {
+    const [all, own, version, scene, settings, seed, turns, frames] = (link.length < 200_000 && LINK.exec(link)) || [];
+    const mine = this.plan.link.split("&"), coming = (turns?.split(",") ?? []).map((each) => TURN.exec(each));
+    if (!all || coming.includes(null) || Number(frames) > LONGEST || coming.length > MOST_TURNS || !Number.isSafeInteger(Number(seed))) {
+      refuse("This link is damaged: copy it again, as a whole.");
+    } else if (mine[0] !== `atmosbox=${version}`) refuse(`This link is of atmosbox ${version}: open it in a page of that version, for another gives other numbers.`);
+    else if (mine[1] !== `scene=${scene}`) refuse(`This link is for the scene ${scene}: open it in the page that atmosbox lab ${scene} writes.`);
+    else if (await this.found(own, Number(seed), settings)) {
+      this.again();
+      const wrong = coming.find(([, frame, name, value], place) => !(name in this.plan.knobs) || frame - (coming[place - 1]?.[1] ?? 0) < 0
+        || !(value === "start" || (value >= this.control(name).low && value <= this.control(name).high)));
+      if (wrong) refuse(`${wrong[2]} = ${wrong[3]} cannot be turned in frame ${wrong[1]}: copy the link again, as a whole.`);
+      else this.coming = coming.map(([, frame, name, value]) => ({ frame: Number(frame), name, value: value === "start" ? null : Number(value) }));
+    }
+  }
+
+  // Take the box of a link; return whether there is one.
+  async found(own, seed, settings) {
+    const fits = ({ link, ...plan }) => link === own && (plan.seeded || plan.seed === seed);
+    let start = this.start, machine = fits(this.plan) ? this.machine : null;
+    if (!machine && this.served) {
+      start = { ...Object.fromEntries(settings.split("&").slice(1).map((each) => each.split("=").map(decodeURIComponent))), seed };
+      machine = await this.planned(start);
+      if (!machine) return false;
+    } else if (!machine) {
+      start = this.starts.find(fits);
+      machine = start === undefined ? null : await this.starts.machine(start);
+    }
+    if (!machine) {
+      refuse(`This page has no box with the settings of the link: type atmosbox run --replay, and the link in quotes.`);
+      return false;
+    }
+    this.take(machine);
+    Object.assign(this, { start, seed });
+    return true;
+  }
+
   save() {
-    const { rows, every } = this.trace, { units, frames } = this.plan, command = this.command();
+    const { rows, every } = this.trace, { units, frames, time } = this.plan, command = this.command(), link = this.link();
     const names = Object.keys(rows[0] ?? {}).filter((name) => name in units);
     const repeats = this.frame > frames ? `repeats the first ${frames} frames of this run` : "repeats this run";
-    const about = [`# ${command}`, ...this.turned.length ? ["# begins like this run; then these changes by hand", ...this.turned] : [`# ${repeats}`]];
+    const turned = this.turned.map(({ frame, name, value }) => `# after frame ${frame}, at ${brief(frame * this.plan.frame * time)} ${this.told.stage.time.unit}: `
+      + `${name} = ${value ?? "as at the start"} ${value === null ? "" : this.control(name).unit}`.trim());
+    const about = [`# ${command}`, ...turned.length ? ["# begins like this run; then these changes by hand", ...turned] : [`# ${repeats}`],
+      link ? `# atmosbox run --replay "${link}"\n# repeats all ${this.frame} frames` : "# this run has become too long for a link"];
     if (every > 1) about.push(`# every ${every}th frame`);
     const lines = [...about, `# units: ${names.map((name) => `${name} [${units[name]}]`).join(", ")}`, names.join(","),
       ...rows.map((row) => names.map((name) => row[name]).join(","))];
@@ -412,6 +494,7 @@ async function hear(data) {
     if (data.type === "begin") {
       const starts = await Starts.of(data);
       box = new Box(starts, await starts.machine(starts.first), data.served);
+      if (data.link) await box.open(data.link);
     } else await box?.obey(data);
   } catch (error) {
     refuse(`The engine of this page has stopped: ${error.message}`);

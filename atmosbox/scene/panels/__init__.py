@@ -7,7 +7,15 @@ afterwards, on a machine that has neither the scene nor the engine.
 
 from atmosbox.scene.panels.line import ROLES, Line
 from atmosbox.scene.panels.over_time import over_time
-from atmosbox.scene.panels.panel import ATMOSPHERE_VARIABLES, DISC_VARIABLES, KINDS, SCALES, SKEWT_AXES, Panel
+from atmosbox.scene.panels.panel import (
+    ATMOSPHERE_VARIABLES,
+    DISC_VARIABLES,
+    KINDS,
+    SCALES,
+    SKEWT_AXES,
+    Panel,
+    without_headlines,
+)
 from atmosbox.scene.panels.record import from_json, to_json
 
 __all__ = [
@@ -22,4 +30,5 @@ __all__ = [
     "from_json",
     "over_time",
     "to_json",
+    "without_headlines",
 ]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from atmosbox.scene.panels.line import Line
 from atmosbox.scene.panels.text_check import check_choice, check_text
 
-__all__ = ["ATMOSPHERE_VARIABLES", "DISC_VARIABLES", "KINDS", "SCALES", "SKEWT_AXES", "Panel"]
+__all__ = ["ATMOSPHERE_VARIABLES", "DISC_VARIABLES", "KINDS", "SCALES", "SKEWT_AXES", "Panel", "without_headlines"]
 
 KINDS = ("line", "profile", "histogram", "discs", "skewt", "atmosphere")
 SCALES = ("linear", "log")
@@ -148,3 +148,20 @@ class Panel:
         if self.kind == "discs":
             return DISC_VARIABLES
         return tuple(dict.fromkeys(name for line in self.lines for name in line.variables))
+
+
+def without_headlines(panel: Panel) -> Panel | None:
+    """Return a panel without curves that come from headlines, for a run that has none; None if nothing is left.
+
+    Examples
+    --------
+    >>> base = Line("air_temperature", "cloud_base_of_this_run", "cloud base")
+    >>> without_headlines(Panel("profile", "Cloud", (base,))) is None
+    True
+    """
+    from atmosbox.file.variables import known
+
+    if panel.kind == "discs":
+        return panel
+    lines = tuple(line for line in panel.lines if all(known(name.partition("[")[0]) for name in line.variables))
+    return replace(panel, lines=lines, headlines=()) if lines else None

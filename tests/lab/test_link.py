@@ -1,0 +1,143 @@
+"""The link of a run: the page and Python run it to the last bit, and what is wrong with it is said in a sentence."""
+
+import json
+import random
+import shlex
+
+import numpy as np
+import pytest
+
+from atmosbox import __version__
+from atmosbox.file.netcdf import read
+from atmosbox.lab import save_lab
+from atmosbox.lab.wasm_module import SCENES
+from atmosbox.simulation.preparation import prepare
+from atmosbox.simulation.recording import Recording
+from atmosbox.simulation.replay import read_link, replayed
+from atmosbox.simulation.runner import build
+from tests.in_process import typed
+from tests.lab.test_browser import SMALL, Lab, state_of
+
+LEAST = f"#atmosbox={__version__}&scene=temperature&molecules=50&seed=7"
+"""A link up to the seed."""
+TURNED = {
+    "temperature": ({}, 90, {"temperature": (-200.0, 500.0)}),
+    "lifting-dry": ({"molecules": 100, "ascent": 40}, 60, {"altitude": (0.0, 9.0)}),
+    "atmosphere": ({"molecules": 500}, 20, {"temperature": (100.0, 600.0)}),
+    "convection": (
+        {"molecules": 300},
+        60,
+        {"floor_temperature": (-250.0, 500.0), "ceiling_temperature": (-250.0, 500.0)},
+    ),
+    "condensation": ({"molecules": 300}, 60, {"temperature": (-20.0, 60.0)}),
+    "evaporation": ({"molecules": 300, "pool": 60}, 60, {"temperature": (-20.0, 60.0), "open_pool": (0.0, 100.0)}),
+    "attraction": ({"molecules": 100}, 60, {"attraction": (0.0, 1.0), "temperature": (60.0, 250.0)}),
+    "mountains": ({"molecules": 200, "travel": 20}, 80, {"way": (0.0, 100.0)}),
+    "lifting-moist": ({"molecules": 200, "ascent": 30}, 60, {"altitude": (0.0, 5.0)}),
+}
+"""Settings, number of frames, and the knobs of a scene with the range in which they are turned."""
+
+
+@pytest.fixture(scope="module")
+def new_tab(new_tab):
+    """A function that opens a tab without a network."""
+    return lambda **options: new_tab(**{"offline": True, "reduced_motion": "reduce", **options})
+
+
+@pytest.fixture
+def lab(usual_tab, tmp_path):
+    """A function that opens the page of a scene, at a link."""
+    opened = []
+
+    def show(scene, settings, link=""):
+        path = tmp_path / f"{scene}.html"
+        if not path.exists():
+            save_lab(prepare(scene, SCENES[scene] | settings, engine="exact"), path, others=False)
+        opened.append(Lab(usual_tab, path.as_uri() + link))
+        return opened[-1]
+
+    yield show
+    for each in opened:
+        each.close()
+
+
+def link_of(shown):
+    """Return the link of the run in a page."""
+    shown.page.evaluate("delete document.body.dataset.link")
+    shown.ask(type="link")
+    return shown.page.wait_for_selector("body[data-link]").get_attribute("data-link")
+
+
+def end_of(link):
+    """Return the SHA-256 of the state after the run of a link in Python."""
+    prepared = replayed(link)
+    setup = build(prepared)
+    recording = Recording(prepared, setup, {})
+    while recording.frames < prepared.frames(setup):
+        recording.advance(lambda now: None)
+    assert setup.parcel.contacts > 100
+    return state_of(setup.parcel)
+
+
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=() if name == "temperature" else pytest.mark.validate) for name in TURNED]
+)
+def test_a_run_with_twenty_turns_is_the_same_to_the_last_bit_in_its_page_in_a_new_one_and_in_python(lab, scene):
+    settings, frames, knobs = TURNED[scene]
+    settings = SMALL[scene][0] | settings
+    draw = random.Random(scene)
+    shown = lab(scene, settings)
+    if scene != "convection":
+        shown.ask(type="reset", seed=2**53 - 1)
+    for turn in range(20):
+        name = draw.choice(list(knobs))
+        shown.ask(type="frames", value=1 + frames * turn // 20)
+        if turn == 7:  # play for a while, at another pace and out of sight, and stop within a frame
+            shown.ask(type="pace", value=0.3)
+            shown.ask(type="play")
+            shown.page.wait_for_timeout(200)
+            shown.ask(type="watched", **{"is": False})
+            shown.ask(type="pause")
+            shown.ask(type="watched", **{"is": True})
+        shown.ask(type="set", name=name, value=round(draw.uniform(*knobs[name]), draw.choice([0, 2, 13])))
+        shown.ask(type="pause")  # an ascent that had come to its end plays on when it is led elsewhere
+        shown.ask(type="undo") if turn in (0, 5, 13) else None
+        shown.ask(type="step") if turn == 11 else None
+    shown.ask(type="frames", value=frames)
+    link, state = link_of(shown), shown.digest()
+    assert len(read_link(link)[2].turns) > 15
+    assert end_of(link) == state
+    shown.close()
+    again = lab(scene, settings, link)
+    again.ask(type="frames", value=read_link(link)[2].frames)
+    assert again.digest() == state
+    assert link_of(again) == link
+
+
+def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_can_be_used_as_any(
+    lab, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    shown = lab("temperature", {"molecules": 50, "duration": "2 ns"})
+    for frame, value in ((30, 300.0), (60, -100.0), (90, None)):
+        shown.ask(type="frames", value=frame)
+        shown.ask(type="set", name="temperature", value=value) if value else shown.ask(type="undo")
+    shown.ask(type="frames", value=200)
+    about, table = shown.table()
+    program, *words = shlex.split(next(line for line in about if "--replay" in line)[2:])
+    assert program == "atmosbox"
+    assert typed(*words, "--out", "run.nc").exit_code == 0
+    run = read("run.nc")
+    np.testing.assert_array_equal(run.collision_count, table["collision_count"])
+    np.testing.assert_allclose(run.wall_temperature[:, 4], table["wall_temperature[z_low]"])
+    assert [turn["frame"] for turn in json.loads(run.atmosbox_turns)] == [30, 60, 90]
+    assert "at 0.06 ns temperature = 300 degC; at 0.12 ns temperature = -100 degC" in run.comment
+    assert run.atmosbox_headlines == "[]"  # a mean over all these temperatures has no theory
+    # the histogram is that of the time after the last turn, which undid both others
+    np.testing.assert_allclose(run.air_temperature_theory[-1], 298.15)
+    late = np.sqrt((run.molecule_speed[140:] ** 2).mean())
+    mean = np.sqrt((run.speed_probability_density * run.speed**2 * np.diff(run.speed_bnds, axis=1)[:, 0]).sum())
+    assert float(mean) == pytest.approx(float(late), rel=0.05)
+    for command in ("check", "plot"):
+        assert typed(command, "run.nc").exit_code == 0
+    assert typed("run", "--from", "run.nc", "--dry-run").exit_code == 0
