@@ -17,7 +17,6 @@ gravity.
 """
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -99,7 +98,7 @@ def _start(settings: Settings, *, ideal: bool) -> MoistBox:
     return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
 
-def _liquid(settings: Settings, start: MoistBox, place: Sequence[Sequence[float]] = ()) -> Liquid:
+def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] = ()) -> Liquid:
     """Return a mist, or drops around nuclei at these places."""
     heat = nuclei_heat_capacity(settings.molecules)
     if not settings.drops:

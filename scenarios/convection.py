@@ -275,9 +275,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         raise settings.refusal("rotation", "is not for the discs of a plane", Option("engine", "dsmc"))
     n, scale = settings.molecules, box.scale
     planar = not box.thin
-    if settings.start == "mixed" and planar:
-        rng, places, kT = None, Scattered(), 1.0
-    else:
+    rng: RandomNumbers | None = None
+    places: Scattered | Placed = Scattered()
+    kT: float | np.ndarray = 1.0
+    if settings.start == "at-rest" or box.thin:
         rng = RandomNumbers(settings.seed)
         position, kT = _layered(box, settings, rng)
         places = Placed(position)

@@ -9,8 +9,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import AttractingParcelSet, ParcelSet
-from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
-from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW
 from atmosbox.engine.exact.rows import FEWEST, MOST, row_stride
@@ -27,7 +26,7 @@ from atmosbox.lab.kernels.sight import Sight
 from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_lab_box import hygrometer, liquid_sight, moisture
-from atmosbox.lab.start_recipe import no_start, start_of, watched
+from atmosbox.lab.start_plan import first_baths, is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_lab_box import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
@@ -98,7 +97,7 @@ class LabBox(NamedTuple):
     @property
     def modes(self) -> Modes:
         """What the scene requires of the engine."""
-        modes: Modes = self.setup.parcel._modes  # type: ignore[attr-defined]
+        modes: Modes = self.setup.parcel.arrays().modes  # type: ignore[attr-defined]
         return modes
 
     @property
@@ -134,7 +133,7 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = "runs in the page with the exact engine alone"
     elif type(parcel) not in _BOXES:
         why = "has an engine of its own, which is not compiled for the page"
-    elif parcel._driver is not None and not parcel._ascends:
+    elif parcel.driver is not None and parcel.arrays().ascent is None:
         why = "moves its piston in a way that is not compiled for the page"
     elif unknown:
         why = f"has an instrument that is not compiled for the page, {unknown[0]}"
@@ -147,7 +146,7 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
     if flow is None:
         return True
     parts = None if layers is None else (layers._number, layers._columns)
-    return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel._modes) and flow._shape == parts
+    return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow._shape == parts
 
 
 def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> LabBox:
@@ -171,80 +170,83 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
     >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.counts.size
     58
     """
-    with watched(prepared) as seen:
-        setup = build(prepared)
+    setup = build(prepared)
     refuse(prepared, setup)
     parcel: Any = setup.parcel
+    arrays = parcel.arrays()
     stage = None if picture is None else picture(setup)
     attracts = type(parcel) is AttractingParcelSet
-    layout: Any = lists(parcel) if attracts else _layout(parcel)
-    start = start_of(prepared, setup, seen)
-    begun = start or no_start(setup)
-    if begun is not None and parcel._modes.gravity and not attracts:
-        begun = begun._replace(layout=layout)
-    return LabBox(
+    layout: Any = lists(parcel) if attracts else _layout(arrays)
+    box = LabBox(
         prepared,
         setup,
-        well_gas(parcel) if attracts else _gas(parcel, layout),
-        _ascent(parcel),
+        well_gas(parcel) if attracts else _gas(arrays, layout),
+        _ascent(arrays.ascent),
         Book(
-            np.array([parcel._now]),
-            np.array([parcel._epoch_length]),
-            parcel._clocks,
-            np.array([parcel._start_energy]),
-            moisture(parcel),
+            np.array([arrays.now]),
+            np.array([arrays.epoch_length]),
+            arrays.clocks,
+            np.array([arrays.start_energy]),
+            moisture(arrays),
         ),
         layout,
         _gauges(prepared, setup),
         *_averages(setup),
         _sight(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
-        begun,
-        start is not None,
+        start_of(parcel, layout),
+        is_drawn(parcel),
     )
+    return _without_molecules(box) if box.seeded else box
 
 
-def _layout(parcel: Any) -> Layout:
+def _without_molecules(box: LabBox) -> LabBox:
+    """Return a box without its molecules, which the kernel ``start`` is to draw: the page gets smaller."""
+    molecules = aligned_records(box.gas.molecules.size, MOLECULE)
+    molecules[:] = box.gas.molecules
+    in_gas = molecules[: box.setup.parcel.number]  # after these follow the molecules of the liquid, and the drops
+    for name in ("x", "y", "z", "vx", "vy", "vz"):
+        in_gas[name] = 0.0
+    kinds = box.gas.kinds._replace(rotational_energy=np.zeros_like(box.gas.kinds.rotational_energy))
+    return box._replace(gas=box.gas._replace(molecules=molecules, kinds=kinds))
+
+
+def _layout(arrays: Any) -> Layout:
     """Return the present layout of the cells, with memory for other layouts."""
-    c = parcel._cells
-    column = _column(parcel)
+    c = arrays.gas.cells
+    column = _column(arrays)
     # rows begin as short as in Python, and grow when molecules are placed
-    places = FEWEST if parcel._modes.rows else ROW - 1
+    places = FEWEST if arrays.modes.rows else ROW - 1
     shape = [places, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
     most = max(*shape[1:3], column.count.size) if column else int(_SPARE * max(shape[1:4]))
     edge = np.zeros((3, most + 3))
     for axis in range(3):
-        edge[axis, : shape[1 + axis] + 1] = parcel._grid.edges[axis]
-    return Layout(
-        np.array(shape), np.array([float(parcel._filled)]), edge, float(parcel._size_radius[0]), column
-    )  # fmt: skip
+        edge[axis, : shape[1 + axis] + 1] = arrays.grid.edges[axis]
+    return Layout(np.array(shape), np.array([arrays.filled]), edge, float(arrays.size_radius[0]), column)
 
 
-def _column(parcel: Any) -> Any:
+def _column(arrays: Any) -> Any:
     """Return the data from which the layers of cells of a column are chosen; 0 without gravity."""
-    if not parcel._modes.gravity:
+    if not arrays.modes.gravity:
         return 0
-    walls = parcel._walls
-    grid = parcel._grid
-    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
-    baths = [float(kT) for law, kT in first if law == HEAT_BATH]
-    weight = float(parcel.mass.mean()) * parcel.gravity
+    gas, grid = arrays.gas, arrays.grid
+    weight = float(gas.kinds.table["mass"][gas.molecules["kind"]].mean()) * gas.box.gravity
     most = max(grid.wanted, grid.number[2])
-    return Column(
-        weight, max(baths, default=0.0), grid.wanted, grid.thinnest, np.zeros(most, np.int64), np.zeros(most + 1)
-    )
+    warmest = max(first_baths(gas.walls), default=0.0)
+    return Column(weight, warmest, grid.wanted, grid.thinnest, np.zeros(most, np.int64), np.zeros(most + 1))
 
 
-def _gas(parcel: Any, layout: Layout) -> Gas:
+def _gas(arrays: Any, layout: Layout) -> Gas:
     """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if needed."""
-    cells, number, copies = parcel._cells, parcel._molecules.size, parcel._cells.copies
+    cells, number, modes = arrays.gas.cells, arrays.gas.molecules.size, arrays.modes
+    copies = cells.copies
     many = cells.number_x * cells.number_y * cells.number_z
     most = layout.edge.shape[1] - 1
     if layout.column:
         many = cells.number_x * cells.number_y * layout.column.count.size
-    elif parcel._modes.piston:
+    elif modes.piston:
         many = int(_SPARE * many)
-    if layout.column or parcel._modes.piston:
+    if layout.column or modes.piston:
         cells = cells._replace(boundary=_larger(cells.boundary, (len(cells.boundary), 3, 2 * most), math.inf))
         copies = copies._replace(
             centre=_larger(copies.centre, (3, most), 0.0),
@@ -253,15 +255,15 @@ def _gas(parcel: Any, layout: Layout) -> Gas:
             room=_larger(copies.room, (most,), 1.0),
         )
     short, long = ROW, _LONGER * cells.stride
-    if parcel._modes.rows:
-        short, long = (row_stride(places, parcel._modes.mixed) for places in (FEWEST, MOST))
+    if modes.rows:
+        short, long = (row_stride(places, modes.mixed) for places in (FEWEST, MOST))
     row = aligned_records(many * long, np.dtype("u4")).view(np.ndarray)
     events = aligned_records(number, EVENT)
     slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
     place = events.view(np.ndarray).view(np.uint8)
     copies = copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
     cells = cells._replace(row=row, stride=short, slot=slot, copies=copies)
-    gas: Gas = parcel._gas()._replace(events=events, cells=cells, calendar=new_calendar(number))
+    gas: Gas = arrays.gas._replace(events=events, cells=cells, calendar=new_calendar(number))
     return gas
 
 
@@ -272,11 +274,10 @@ def _larger(table: Any, shape: tuple[int, ...], rest: float) -> Any:
     return made
 
 
-def _ascent(parcel: Any) -> Any:
+def _ascent(ascent: Any) -> Any:
     """Return the data that control the piston, with memory for a course changed by hand; 0 for a box without ascent."""
-    if not parcel._ascends:
+    if ascent is None:
         return 0
-    (ascent,) = parcel._ascent()
     lift = ascent.lift
     time, moment = np.full(_CORNERS, math.inf), np.full(_CORNERS, lift.course_moment[-1])
     time[: lift.course_time.size], moment[: lift.course_time.size] = lift.course_time, lift.course_moment
@@ -320,7 +321,7 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
 def _wind(setup: Setup) -> Any:
     """Return the data of the wind; empty arrays in a scene that does not measure it, 0 if no kernel can."""
     flow, parcel = _of(setup, Flow), setup.parcel
-    if not can_flow(parcel._modes):  # type: ignore[attr-defined]
+    if not can_flow(parcel.arrays().modes):  # type: ignore[attr-defined]
         return 0
     rows, columns = (0, 0) if flow is None else flow._shape
     high, phases, lapse, dense = np.zeros(0), np.zeros((0, 0)), np.zeros(2), 1.0

@@ -21,7 +21,6 @@ from atmosbox.lab.moist_plan import (
     planned_alone,
     water_readings,
 )
-from atmosbox.lab.seeding import is_the_seed_all, without_molecules
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.lab.well_lab_box import drop_readings, has_bath
@@ -87,9 +86,6 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
 
     box = lab_box(prepared, look)
     setup, (stage, fast) = box.setup, seen[0]
-    is_seeded = is_the_seed_all(box)
-    if is_seeded:
-        box = without_molecules(box)
     named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
     named["book"] = box.book
     memory = image(arguments(box), named)
@@ -149,7 +145,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "units": {},
         "command": _command(prepared),
         "link": link_start(prepared),
-        "seeded": is_seeded,
+        "seeded": box.seeded,
         "seed": prepared.settings.seed,
     }
     names = [name for name, _, _ in readings]

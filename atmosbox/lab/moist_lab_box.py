@@ -34,26 +34,27 @@ _FARTHEST, _OFFSETS = 0.16, 41
 """If it rains: largest offset of the logarithm of pressure from the planned one, and number of offsets in the table."""
 
 
-def moisture(parcel: Any) -> Any:
+def moisture(arrays: Any) -> Any:
     """Return the liquid of a box; 0 if it has none."""
-    if not hasattr(parcel, "vapour"):
+    if arrays.reservoir is None:
         return 0
-    return Moisture(parcel._reservoir, parcel._vapours, parcel._rotations, getattr(parcel, "_drops", 0))
+    return Moisture(arrays.reservoir, arrays.vapours, arrays.rotations, arrays.drops or 0)
 
 
 def hygrometer(prepared: Prepared, setup: Setup) -> Any:
     """Return the data of the instruments for the water of a box; 0 if it has none."""
     parcel: Any = setup.parcel
-    if not hasattr(parcel, "vapour"):
+    arrays = parcel.arrays()
+    if arrays.reservoir is None:
         return 0
-    substance: Substance = parcel._liquid.substance
+    substance: Substance = arrays.substance
     scale, binding = setup.scale, float(substance.binding_energy)
     lift = next((each for each in setup.instruments if type(each) is MoistLift), None)
     none = np.zeros(0)
     moment, planned, log_pressure, adiabat = none, none, none, np.zeros((0, 0))
     level, around = none, none
     if lift is not None:
-        rains = parcel._reservoir.rain > 0.0
+        rains = arrays.reservoir.rain > 0.0
         moment, planned, log_pressure, adiabat = (
             _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
         )
@@ -139,7 +140,7 @@ def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tup
     kelvin, pressure = lift._curve(around)[middle], around[middle]
     told = theory_at(prepared, pressure, rains=True)
     water = told["humidity_mixing_ratio_theory"] + told["cloud_liquid_water_mixing_ratio_theory"]
-    heat = float(parcel._reservoir.nuclei) / (parcel.number - parcel.vapour)
+    heat = float(parcel.arrays().reservoir.nuclei) / (parcel.number - parcel.vapour)
     offsets = np.linspace(-_FARTHEST, _FARTHEST, _OFFSETS)
     rows = [
         law.parcel_path(p * np.exp(offsets), p, t, w, nuclei_heat=heat).temperature
@@ -183,7 +184,8 @@ def _leaving(setup: Setup) -> tuple[Any, int, int]:
     bounds = bins_of(setup, leaving)
     merged = leaving._merged
     parcel: Any = setup.parcel
-    return np.diff(bounds)[:, 0] / setup.scale.energy, len(bounds) - parcel._reservoir.spectrum.size // merged, merged
+    edges, _ = parcel.emitted_energy
+    return np.diff(bounds)[:, 0] / setup.scale.energy, len(bounds) - (edges.size - 1) // merged, merged
 
 
 def bins_of(setup: Setup, leaving: Leaving) -> Any:
@@ -198,7 +200,8 @@ def liquid_sight(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, .
     record = None if stage is None else stage.record
     water = 0 if record is None else int(record["water"])
     spread = places(water)
-    drops = len(parcel._drops.record) if hasattr(parcel, "_drops") else 0
+    present = parcel.arrays().drops
+    drops = 0 if present is None else len(present.record)
     return (
         np.zeros((max(len(spread), drops) + 1, 4), np.float32),
         np.zeros(1, np.int64),

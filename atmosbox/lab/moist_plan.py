@@ -80,7 +80,7 @@ def water_readings(box: LabBox) -> list[tuple[str, int, float]]:
             ("adiabat_temperature", WaterReading.ADIABAT, warm),
             ("moment", WaterReading.MIDDLE, 1.0),
         ]
-        if box.setup.parcel._reservoir.rain > 0.0:  # type: ignore[attr-defined]
+        if box.book.moisture.reservoir.rain > 0.0:
             found.append(("rain_mixing_ratio", WaterReading.RAIN_RATIO, ratio))
         water: Any = box.gauges.water
         if water.level.size:
@@ -112,8 +112,7 @@ def fixed_axes(box: LabBox) -> dict[str, Any]:
 
 def planned_alone(box: LabBox) -> list[str]:
     """Return the curves of theory that hold only on the planned ascent: if it rains, those that depend on the loss."""
-    parcel: Any = box.setup.parcel
-    if not box.modes.phases or _instrument(box.setup, MoistLift) is None or not parcel._reservoir.rain > 0.0:
+    if not box.modes.phases or _instrument(box.setup, MoistLift) is None or not box.book.moisture.reservoir.rain > 0.0:
         return []
     mixing = [f"{name}_mixing_ratio_theory" for name in ("humidity", "cloud_liquid_water", "rain")]
     return ["adiabat_temperature", *mixing]

@@ -46,13 +46,16 @@ def short_run(prepared: Prepared) -> xr.Dataset:
     """
     setup = build(prepared)
     parcel: Any = setup.parcel
-    modes, run = parcel._modes, Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
+    modes, run = (
+        parcel.arrays().modes,
+        Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)}),
+    )
     try:
         for _ in range(_FRAMES):
             run.advance(lambda passed: None)
     except StalledError as error:
         raise EngineError(f"The box of {prepared.scene} cannot begin: {error}.") from error
-    if parcel._modes != modes:
+    if parcel.arrays().modes != modes:
         raise SettingError(
             "scene",
             prepared.scene,

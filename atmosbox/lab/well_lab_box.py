@@ -28,21 +28,23 @@ _POWERS = 4
 
 def well_gas(parcel: Any) -> WellGas:
     """Return the gas before the neighbours of its molecules are listed, with memory for longer lists."""
-    number, old = parcel.number, parcel._vicinity
-    vicinity = new_vicinity(parcel._sides, parcel._periodic, number, old.reach, planar=parcel._planar)
+    number, gas = parcel.number, parcel.arrays().gas
+    old = gas.vicinity
+    vicinity = new_vicinity(parcel.length, parcel.periodic, number, old.reach, planar=parcel.planar)
     entry = np.zeros(number * _LONGER * old.stride, np.uint32)
-    gas: WellGas = parcel._gas()
-    return gas._replace(
+    made: WellGas = gas._replace(
         events=aligned_records(number, EVENT),
         calendar=new_calendar(number),
         vicinity=vicinity._replace(entry=entry, stride=old.stride),
     )
+    return made
 
 
 def lists(parcel: Any) -> Lists:
     """Return the lengths of the lists of neighbours, and the full depths of the wells."""
-    stride = parcel._vicinity.stride
-    return Lists(np.array([stride]), _LONGER * stride, parcel._full_depth, np.array([parcel.strength]), np.zeros(1))
+    arrays = parcel.arrays()
+    stride = arrays.gas.vicinity.stride
+    return Lists(np.array([stride]), _LONGER * stride, arrays.full_depth, np.array([parcel.strength]), np.zeros(1))
 
 
 def crowd(setup: Setup) -> Crowd:
@@ -111,4 +113,4 @@ def drop_readings(setup: Setup, theory: set[str]) -> list[tuple[str, int, float]
 
 def has_bath(setup: Setup) -> bool:
     """Return whether a random bath, and not walls, keeps the molecules at a temperature."""
-    return float(setup.parcel._bath.rate) > 0.0  # type: ignore[attr-defined]
+    return float(setup.parcel.arrays().gas.bath.rate) > 0.0  # type: ignore[attr-defined]

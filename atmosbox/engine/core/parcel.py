@@ -351,6 +351,11 @@ class Parcel(Adjustable):
         return self._diameter
 
     @property
+    def rotation(self) -> Array:
+        """Rotational degrees of freedom of each molecule."""
+        return self._rotation
+
+    @property
     def degrees_of_freedom(self) -> float:
         """Mean number of translational and rotational degrees of freedom of a molecule."""
         return self._freedom
@@ -361,6 +366,11 @@ class Parcel(Adjustable):
         return not (self._collisions and self._diameter.any())
 
     # ------------------------------------------------------------------ the driver
+
+    @property
+    def driver(self) -> Driver | None:
+        """What sets the velocity of the piston, if anything does."""
+        return self._driver
 
     def _drive(self) -> None:
         if self._driver is not None:

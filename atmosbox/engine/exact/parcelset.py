@@ -6,7 +6,7 @@ epoch of time, and turns the kernels' status codes into sentences.
 
 import math
 from collections.abc import Callable
-from typing import ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,10 +29,43 @@ from atmosbox.engine.exact.rows import FEWEST, MORE, MOST, copies_of, row_stride
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
-__all__ = ["ParcelSet"]
+__all__ = ["Arrays", "ParcelSet"]
 
 _CHUNK = 200_000
 _OVERLAP = 1e-9
+
+
+class Arrays(NamedTuple):
+    """What the kernels of a box work on: the arrays of the box itself, not copies of them.
+
+    ``gas`` is their first argument, `Gas` or `WellGas`, and ``modes`` selects them; ``ascent`` is the piston that
+    compiled code moves, None without one; ``now`` is the time that the clocks show, ``epoch_length`` the time after
+    which they are set back, and ``clocks`` those of events that belong to no molecule [time]; ``start_energy`` is the
+    energy at the start [energy]. ``grid`` are the cells, chosen for a ceiling at the height ``filled`` [length] and
+    molecules of the radii ``size_radius : (size,)`` [length]; None if molecules attract each other.
+
+    A box with liquid has its ``reservoir`` and its ``substance``; ``vapours`` is the number of molecules of water in
+    vapour and liquid together, ``rotations`` the rotational degrees of freedom of all molecules together; ``drops``
+    are those that are spheres. If molecules attract each other, ``full_depth : (kind, kind)`` are the depths of their
+    wells at full strength [energy].
+    """
+
+    gas: Any
+    modes: Modes
+    ascent: Ascent | None
+    now: float
+    epoch_length: float
+    clocks: Array
+    start_energy: float
+    grid: Grid | None
+    filled: float
+    size_radius: Array
+    reservoir: Any = None
+    substance: Any = None
+    vapours: int = 0
+    rotations: float = 0.0
+    drops: Any = None
+    full_depth: Any = None
 
 
 class ParcelSet(Parcel):
@@ -105,6 +138,21 @@ class ParcelSet(Parcel):
         for each in (self._mass, self._diameter, self._rotation):
             arrays.append(each if each.strides != (0,) else each[:1])  # a number shared by all is stored once
         return sum(int(a.nbytes) for a in arrays)
+
+    def arrays(self) -> Arrays:
+        """Return what the kernels of this box work on; they change as the box advances, and may be replaced."""
+        return Arrays(
+            gas=self._gas(),
+            modes=self._modes,
+            ascent=next(iter(self._ascent()), None),
+            now=self._now,
+            epoch_length=self._epoch_length,
+            clocks=self._clocks,
+            start_energy=self._start_energy,
+            grid=getattr(self, "_grid", None),
+            filled=float(self._filled),
+            size_radius=self._size_radius,
+        )
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are now; the box does not change."""

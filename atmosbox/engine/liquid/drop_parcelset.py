@@ -12,6 +12,7 @@ from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import KIND, MOLECULE, Kinds, aligned_records
 from atmosbox.engine.exact.cells import size_classes
 from atmosbox.engine.exact.exact import Status
+from atmosbox.engine.exact.parcelset import Arrays
 from atmosbox.engine.liquid import drop
 from atmosbox.engine.liquid.drop import DropRecords
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
@@ -137,6 +138,10 @@ class DropParcelSet(MoistParcelSet):
     def _find_kernels(self) -> None:
         super()._find_kernels()
         self._drop_begin, self._drop_advance = drop.specialise(self._modes)
+
+    def arrays(self) -> Arrays:
+        """Return what the kernels of this box work on: see `ParcelSet.arrays`."""
+        return super().arrays()._replace(drops=self._drops)
 
     def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Return centres [length], radii [length] and numbers of molecules of the present drops."""

@@ -184,6 +184,11 @@ class MoistAccount(Parcel):
         return self._diameter[self.present]
 
     @property
+    def rotation(self) -> Array:
+        """Rotational degrees of freedom of each molecule of the gas."""
+        return self._rotation[self.present]
+
+    @property
     def degrees_of_freedom(self) -> float:
         """Mean number of translational and rotational degrees of freedom of a molecule of the gas."""
         rotation = self._rotations - self._reservoir.rotation * int(self._reservoir.top[0])

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.parcel import Arrangement, Array
 from atmosbox.engine.exact.exact import Status
-from atmosbox.engine.exact.parcelset import ParcelSet
+from atmosbox.engine.exact.parcelset import Arrays, ParcelSet
 from atmosbox.engine.liquid import moist
 from atmosbox.engine.liquid.moist import MoistAscent
 from atmosbox.engine.liquid.moist_account import MoistAccount
@@ -100,6 +100,11 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     @property
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return self.present
+
+    def arrays(self) -> Arrays:
+        """Return what the kernels of this box work on: see `ParcelSet.arrays`."""
+        found = super().arrays()._replace(reservoir=self._reservoir, substance=self._liquid.substance)
+        return found._replace(vapours=self._vapours, rotations=self._rotations)
 
     def memory(self) -> int:
         """Return the memory of molecules, events, cells, calendar and reservoir [bytes]."""

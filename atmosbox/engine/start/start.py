@@ -11,7 +11,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.random import Source
+from atmosbox.engine.core.random import RandomNumbers, Source
 from atmosbox.engine.start.clearing import clear_of_drops
 from atmosbox.engine.start.scatter import random_positions
 from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies
@@ -78,9 +78,18 @@ class Scattered:
 
     def draw(self, gas: _Gas, rng: Source) -> Array:
         """Return random positions."""
-        options = {"periodic": gas.periodic, "planar": gas.planar, "apart": gas.apart}
-        place = random_positions(gas.length, gas.diameter, rng, top=self.top, scale_height=self.scale_height, **options)
+        place = random_positions(
+            gas.length,
+            gas.diameter,
+            rng,
+            periodic=gas.periodic,
+            planar=gas.planar,
+            top=self.top,
+            scale_height=self.scale_height,
+            apart=gas.apart,
+        )
         if gas.apart and np.size(self.reach):
+            assert isinstance(rng, RandomNumbers)
             place = clear_of_drops(place, self.centre, self.reach, float(gas.length[0]), rng)
         if self.numbered == "as placed":
             return place
@@ -207,8 +216,8 @@ class Start:
             As in `atmosbox.engine.random_positions`.
         """
         n = self.molecules
-        each = (np.broadcast_to(np.asarray(values, np.float64), (n,)) for values in (diameter, mass, rotation))
-        gas = _Gas(length, *each, periodic, planar, apart)
+        sigma, m, turning = (np.broadcast_to(np.asarray(each, np.float64), (n,)) for each in (diameter, mass, rotation))
+        gas = _Gas(length, sigma, m, turning, periodic, planar, apart)
         drawn = Drawn(np.zeros((n, 3)), np.zeros((n, 3)), None)
         for part in self.parts:
             drawn = drawn._replace(**{part.draws: part.draw(gas, rng)})

@@ -13,7 +13,7 @@ from atmosbox.engine.core.state import EVENT, MOLECULE, Modes, aligned_records
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.exact import Status
-from atmosbox.engine.exact.parcelset import ParcelSet
+from atmosbox.engine.exact.parcelset import Arrays, ParcelSet
 from atmosbox.engine.wells.attraction import RandomBath, SquareWell, Wells, new_bath, new_wells
 from atmosbox.engine.wells.vicinity import Vicinity, new_vicinity
 from atmosbox.engine.wells.well_events import WellGas, specialise
@@ -183,6 +183,10 @@ class AttractingParcelSet(ParcelSet):
         """The time of the next draw of the bath."""
         clock: Array = self._bath.clock
         return clock
+
+    def arrays(self) -> Arrays:
+        """Return what the kernels of this box work on: see `ParcelSet.arrays`."""
+        return super().arrays()._replace(full_depth=self._full_depth)
 
     def memory(self) -> int:
         """Return the memory of molecules, events, lists and calendar [bytes]."""

@@ -1,8 +1,7 @@
 """Draw the positions and velocities of molecules for another seed, in a page.
 
-The kernels draw as the functions of `atmosbox.engine.start` do, in the same order and with the same numbers; the
-engine's own kernels place the molecules and clear the places of drops. `start_recipe` finds out how a scene uses these
-functions.
+The kernels draw the parts of a declared start in their order, with the same random numbers as
+`atmosbox.engine.start`; the engine's own kernels place the molecules and clear the places of drops.
 """
 
 import functools
@@ -24,13 +23,15 @@ from atmosbox.lab.kernels.laying_out import write_column
 from atmosbox.lab.kernels.moist_passing import moist_passing
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
-__all__ = ["ALONG_X", "AS_PLACED", "SHUFFLED", "STEP", "Cleared", "Start", "can_start", "starting"]
+__all__ = [
+    "ALONG_X", "AS_PLACED", "AT_RANDOM", "PLACES", "SPINS", "VELOCITIES", "Cleared", "Start", "can_start", "starting",
+]  # fmt: skip
 
-AS_PLACED, SHUFFLED, ALONG_X = range(3)
-"""How molecules are numbered after they have been placed: as before, in random order, or from left to right."""
-STEP = 0x9E3779B97F4A7C15
-"""Increment of the state of the random numbers with each number."""
-_STEP = np.uint64(STEP)
+PLACES, VELOCITIES, SPINS = range(3)
+"""The parts of a start that are drawn: positions, velocities, rotational energies."""
+AS_PLACED, AT_RANDOM, ALONG_X = range(3)
+"""How molecules are numbered after they have been placed: see `Scattered`."""
+_STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
     np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & ((1 << 64) - 1)) for use in (RUN, START)
@@ -49,14 +50,13 @@ class Cleared(NamedTuple):
 class Start(NamedTuple):
     """The data with which the molecules of a box are drawn and placed.
 
-    ``place``, ``order``, ``motion`` and ``rotation`` say after how many random numbers positions, numbering,
-    velocities and rotational energies are drawn; ``numbered`` is one of `AS_PLACED`, `SHUFFLED`, `ALONG_X`;
-    ``scale_height`` that of the air as it is placed [length], 0 if it is spread evenly; ``planar`` 1 in a plane gas,
-    else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds differ. ``twice`` is twice the kinetic
-    energy of all molecules [energy], ``weight`` their mass, and ``rotating`` their rotational energy [energy];
-    ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of rotation [energy], ``condensed``
-    the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the warmest wall [length/time], in a box
-    with liquid.
+    ``parts : (part,)`` says what is drawn, in order: `PLACES`, `VELOCITIES`, `SPINS`; ``numbered`` is one of
+    `AS_PLACED`, `AT_RANDOM`, `ALONG_X`; ``scale_height`` that of the air as it is placed [length], 0 if it is spread
+    evenly; ``planar`` 1 in a plane gas, else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds
+    differ. ``twice`` is twice the kinetic energy of all molecules [energy], ``weight`` their mass, and ``rotating``
+    their rotational energy [energy]; ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of
+    rotation [energy], ``condensed`` the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the
+    warmest wall [length/time], in a box with liquid.
 
     ``spheres`` and ``bins`` are the arguments of the engine's functions that place molecules; ``factor :
     (molecule,)`` is sqrt(kT / m) [length/time], ``mass`` and ``degrees : (molecule,)`` are mass and rotational degrees
@@ -67,10 +67,7 @@ class Start(NamedTuple):
     ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
     """
 
-    place: int
-    order: int
-    motion: int
-    rotation: int
+    parts: Any
     numbered: int
     scale_height: float
     planar: int
@@ -114,12 +111,6 @@ def _first_state(seed, first):
 
 
 @kernel
-def _skip(seed, number, state):
-    """Set the random numbers of a start to the state after `number` of them."""
-    state[0] = _first_state(seed, _FIRST_OF_START) + _STEP * np.uint64(number)
-
-
-@kernel
 def _sort(key, rank, other):
     """Sort keys and write their order, stable for equal keys: a merge sort with runs that double."""
     number = rank.size
@@ -143,10 +134,9 @@ def _sort(key, rank, other):
 
 
 @kernel
-def _place(seed, start):
+def _place(start):
     """Place all molecules at random; return whether that was possible: see `random_positions`."""
     state = start.state
-    _skip(seed, start.place, state)
     first = uniform(state)
     after = state[0]
     state[0] = np.uint64(first * SERIES)
@@ -157,16 +147,15 @@ def _place(seed, start):
 
 
 @kernel
-def _number(seed, start):
+def _number(start):
     """Assign a number to each molecule."""
     key, rank = start.key, start.rank
     for i in range(rank.size):
         rank[i] = i
     if start.numbered == AS_PLACED:
         return
-    _skip(seed, start.order, start.state)
     for i in range(rank.size):
-        key[i] = uniform(start.state) if start.numbered == SHUFFLED else start.spheres.x[i, 0]
+        key[i] = uniform(start.state) if start.numbered == AT_RANDOM else start.spheres.x[i, 0]
     _sort(key, rank, start.other)
 
 
@@ -177,10 +166,9 @@ def _sum(number, start):
 
 
 @kernel
-def _move(seed, start):
+def _move(start):
     """Draw the velocities of all molecules."""
     state, v, factor = start.state, start.velocity, start.factor
-    _skip(seed, start.motion, state)
     number = 3 * v.shape[0]
     for k in range(0, number, 2):
         one, two = gaussian_pair(state)
@@ -222,10 +210,9 @@ def _be_at_rest(start):
 
 
 @kernel
-def _turn(seed, start, energy):
-    """Draw the rotational energies of all molecules of the gas, and return their sum: see `rotational_energies`."""
+def _turn(start, energy):
+    """Draw the rotational energies of all molecules of the gas: see `rotational_energies`."""
     degrees, state, key = start.degrees, start.state, start.key
-    _skip(seed, start.rotation, state)
     for i in range(degrees.size):
         drawn = -log_of_normal(uniform(state))
         energy[i] = drawn if degrees[i] >= 2.0 else 0.0
@@ -243,8 +230,14 @@ def _turn(seed, start, energy):
         factor = start.rotating / _sum(degrees.size, start)
         for i in range(degrees.size):
             energy[i] *= factor
-            key[i] = energy[i]
-    return _sum(degrees.size, start)
+
+
+@kernel
+def _rotational_energy(start, energy):
+    """Return the sum of the rotational energies of all molecules of the gas."""
+    for i in range(start.degrees.size):
+        start.key[i] = energy[i]
+    return _sum(start.degrees.size, start)
 
 
 @kernel
@@ -293,6 +286,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
     def prepare_cells(kinetic, gas, book, begun):
         """Set how long copies in cells are valid, and choose layers of cells; return whether that was possible."""
         if wells:
+            gas.bath.clock[0] = math.inf  # `place` draws it
             return True
         gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
         if modes.gravity:
@@ -322,6 +316,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
         def begin_liquid(gas, ascent, book, begun):
             """Give the piston its first velocity, and draw the first event of the liquid."""
             begin_ascent(gas, ascent, book, begun)
+            book.moisture.reservoir.bound[0] = 0.0
             # in a loop, so that it is compiled once: for the molecules, and again for a piston that may be faster
             for speed in (max(_fastest(begun), begun.warm), 2.0 * abs(gas.walls.piston[1])):
                 wake(gas, book, speed)
@@ -332,14 +327,21 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
     @kernel
     def start(gas, ascent, book, begun, seed):
         """Give all molecules the positions and velocities of a seed; return whether that was possible."""
-        word = np.uint64(seed)
-        if not _place(word, begun):
-            return 1
-        if modes.drops > 0:
-            drops = begun.cleared
-            _clear(begun.spheres.x, drops.centre, drops.reach, drops.side, begun.state)
-        _number(word, begun)
-        _move(word, begun)
+        word, state = np.uint64(seed), begun.state
+        state[0] = _first_state(word, _FIRST_OF_START)
+        for part in begun.parts:
+            if part == PLACES:
+                if not _place(begun):
+                    return 1
+                if modes.drops > 0:
+                    _clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, state)
+                _number(begun)
+            elif part == VELOCITIES:
+                _move(begun)
+            elif modes.rotation:
+                _turn(begun, gas.kinds.rotational_energy)
+            else:  # molecules without rotation: their numbers are drawn, too
+                state[0] += _STEP * np.uint64(begun.degrees.size)
         for i in range(begun.rank.size):
             molecule, k = gas.molecules[i], begun.rank[i]
             molecule.x = begun.spheres.x[k, 0]
@@ -351,7 +353,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
         gas.tallies.random[0] = _first_state(word, _FIRST_OF_RUN)
         _write_epoch(begun, book)
         kinetic = _kinetic_energy(begun)
-        rotational = _turn(word, begun, gas.kinds.rotational_energy) if modes.rotation else 0.0
+        rotational = _rotational_energy(begun, gas.kinds.rotational_energy) if modes.rotation else 0.0
         book.energy[0] = kinetic + rotational + begun.condensed
         begin_liquid(gas, ascent, book, begun)
         return 0 if prepare_cells(kinetic, gas, book, begun) else 1

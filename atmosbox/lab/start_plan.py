@@ -1,0 +1,140 @@
+"""How a page draws and places molecules with any seed: the start that a scene declares, as the kernel takes it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import EqualSpeeds, Maxwell, Placed, Rotating, Scattered
+from atmosbox.engine import Start as Declared
+from atmosbox.engine.core.elementary import cbrt
+from atmosbox.engine.core.lift import Gauges
+from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.start.overlap import bins_of, spheres_of
+from atmosbox.lab.kernels.pairwise import DEPTH
+from atmosbox.lab.kernels.starting import (
+    ALONG_X,
+    AS_PLACED,
+    AT_RANDOM,
+    PLACES,
+    SPINS,
+    VELOCITIES,
+    Cleared,
+    Start,
+    can_start,
+)
+
+__all__ = ["first_baths", "is_drawn", "start_of"]
+
+_DRAWN = {"position": PLACES, "velocity": VELOCITIES, "rotational_energy": SPINS}
+_NUMBERED = {"as placed": AS_PLACED, "at random": AT_RANDOM, "along x": ALONG_X}
+
+
+def is_drawn(parcel: Any) -> bool:
+    """Return whether a page can draw the start of a box for any seed.
+
+    It cannot if the scene does not declare the start, or gives the places of the molecules.
+    """
+    modes, start = parcel.arrays().modes, parcel.start
+    if start is None or not parcel.number or not can_start(modes) or (modes.gravity and modes.mixed):
+        return False
+    return not any(isinstance(p, Placed) or (isinstance(p, Rotating) and np.ndim(p.kT)) for p in start.parts)
+
+
+def start_of(parcel: Any, layout: Any) -> Start | None:
+    """Return the data of the kernel ``start`` of a box; None if its module has no such kernel.
+
+    Nothing is drawn in a box whose start a page cannot draw: the kernel needs the data only to be loaded.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import build, prepare
+    >>> start_of(build(prepare("temperature", {"molecules": 20})).parcel, 0).parts.tolist()  # velocities first
+    [1, 0]
+    """
+    arrays = parcel.arrays()
+    if not can_start(arrays.modes):
+        return None
+    declared = parcel.start if is_drawn(parcel) else Declared(parcel.number, ())
+    given: dict[str, Any] = {part.draws: part for part in declared.parts}
+    places, moving = given.get("position", Scattered()), given.get("velocity", Maxwell(0.0))
+    turning = given.get("rotational_energy", Rotating(0.0))
+    n, planar = parcel.number, bool(parcel.planar)
+    mass, degrees = np.array(parcel.mass), np.array(parcel.rotation)
+    sides = parcel.length
+    spread = _spread(parcel, sides)
+    sides[2] = sides[2] if places.top is None else places.top
+    spheres = spheres_of(np.array(parcel.diameter), sides, parcel.periodic, planar)
+    equal = isinstance(moving, EqualSpeeds)
+    kT = np.broadcast_to(0.0 if equal else np.asarray(moving.kT, np.float64), (n,))
+    exact = not equal and moving.exact and n > 1 and kT.mean() > 0.0
+    has_layers = arrays.modes.gravity and arrays.grid is not None
+    return Start(
+        parts=np.array([_DRAWN[part.draws] for part in declared.parts], np.int64),
+        numbered=_NUMBERED[places.numbered],
+        scale_height=float(places.scale_height or 0.0),
+        planar=int(planar),
+        speed=float(moving.speed) if equal else 0.0,
+        twice=(2.0 if planar else 3.0) * float(kT.sum()) if exact else 0.0,
+        weight=float(mass.sum()),
+        rotating=0.5 * float(turning.kT * degrees.sum()) if turning.exact else 0.0,
+        warmth=float(turning.kT),
+        condensed=float(parcel.condensed_energy),
+        warm=_warm(parcel),
+        spheres=spheres,
+        bins=bins_of(spheres),
+        factor=np.sqrt(kT / mass),
+        mass=mass,
+        degrees=degrees,
+        spread=spread,
+        at=_first_gauges(parcel),
+        layout=layout if has_layers else 0,
+        cleared=_cleared(places, float(sides[0])) if arrays.modes.drops else 0,
+        velocity=np.zeros((n, 3)),
+        key=np.zeros(3 * n),
+        rank=np.zeros(n, np.int64),
+        other=np.zeros(n, np.int64),
+        waiting=np.zeros((DEPTH, 2), np.int64),
+        partial=np.zeros(DEPTH),
+        state=np.zeros(1, np.uint64),
+    )
+
+
+def first_baths(walls: Any) -> list[float]:
+    """Return the temperatures of the heat baths at the start [energy]."""
+    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    return [float(kT) for law, kT in first if law == HEAT_BATH]
+
+
+def _spread(parcel: Any, sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the spacing of molecules, and the fastest speed of walls and of a fall over it: see `natural_time`."""
+    spacing = float(cbrt(math.prod(sides.tolist()) / max(parcel.number, 1)))
+    fastest = [math.sqrt(kT / float(parcel.mass.mean())) for kT in first_baths(parcel.arrays().gas.walls)]
+    return np.array([spacing, max([*fastest, math.sqrt(parcel.gravity * spacing)])])
+
+
+def _warm(parcel: Any) -> float:
+    """Return a speed of molecules that leave the warmest wall; 0 in a box without liquid: see `MoistParcelSet`."""
+    arrays = parcel.arrays()
+    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
+    return math.sqrt(8.0 * max(baths, default=0.0) / arrays.substance.mass) if arrays.modes.phases else 0.0
+
+
+def _first_gauges(parcel: Any) -> Any:
+    """Return the data of the gas that the law of the piston needs at the start, without energy; 0 without ascent."""
+    if not parcel.arrays().modes.ascends:
+        return 0
+    open_height = parcel.ceiling - float(parcel.diameter.mean())
+    return Gauges(
+        0.0, parcel.number, parcel.degrees_of_freedom, 2.0 if parcel.planar else 3.0, 0.0, 0.0, parcel.open_density,
+        open_height,
+    )  # fmt: skip
+
+
+def _cleared(places: Scattered, side: float) -> Cleared:
+    """Return the drops that molecules make room for."""
+    centre = np.array(places.centre, np.float64).reshape(-1, 3)
+    return Cleared(centre, np.array(places.reach, np.float64), side)
