@@ -5,25 +5,19 @@ of boxes that no scene has, periodic or under a piston, are left to the validate
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine import Drops, HeatBath, Periodic, Piston, Specular, StalledError, Substance
-from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine import Drops, Periodic, Piston, Specular, StalledError, Substance
 from atmosbox.engine.exact.membership import listed, places
 from atmosbox.engine.liquid import drop_parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
+from tests.engine.boxes import SMOOTH, TURNING, WARM, Pulse, apart, many_events
 
-many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
-
-SMOOTH = (Specular(),) * 6
-TURNING = (Periodic(),) * 6
-WARM = (HeatBath(1.0),) * 6
 LIFT = (*TURNING[:4], Specular(), Piston())
 PHI, MASS, DIAMETER = 8.0, 0.62, 0.5
 CENTRES = ((2.0, 2.0, 2.0), (5.0, 2.0, 6.0), (3.5, 6.0, 4.0))
@@ -39,24 +33,6 @@ def nuclei(number=30, centres=CENTRES, substance=None, **changes):
     """Return drops with something in them."""
     facts = {"nuclei": 30.0, "nucleus": 0.5, "nucleus_mass": 4.0, "molecule_radius": 0.3, "sticking": 0.8} | changes
     return Drops(substance or water(), number=number, position=centres, **facts)
-
-
-@dataclass
-class Pulse:
-    """A driver that moves the piston up and down."""
-
-    interval: float = 0.75
-    speeds: tuple = (0.3, -0.45, 0.0, -0.15, 0.3)
-
-    def velocity(self, parcel):
-        return self.speeds[round(parcel.time / self.interval) % len(self.speeds)]
-
-
-def apart(a, b, sides, periodic):
-    """Return the distances of some places from others, to the nearest image."""
-    away = np.asarray(a)[:, None] - np.asarray(b)[None, :]
-    away -= np.where(periodic, np.array(sides) * np.rint(away / np.array(sides)), 0.0)
-    return np.sqrt(np.sum(away**2, axis=2))
 
 
 def damp(drops, air=20, vapour=10, *, sides=(8.0, 8.0, 8.0), walls=SMOOTH, kT=1.0, seed=9, **options):

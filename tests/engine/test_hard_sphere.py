@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from atmosbox.engine.core.hard_sphere import resolve_contact, share_energy
 from atmosbox.engine.core.pair import approach, predict
+from tests.engine.boxes import random_state
 
 NUMBERS = st.floats(-10.0, 10.0)
 VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
@@ -19,10 +20,6 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter):
     """Return when a pair meets, as the engine asks for it: a discriminant above zero and an approach, or never."""
     discriminant, slope, gap = approach(rx, ry, rz, vx, vy, vz, diameter)
     return predict(discriminant, slope, gap) if discriminant > 0.0 and slope < 0.0 else math.inf
-
-
-def random_state(seed):
-    return np.random.SeedSequence(seed).generate_state(1, np.uint64)
 
 
 @given(VECTORS, VECTORS, st.floats(0.1, 2.0))

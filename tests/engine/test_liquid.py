@@ -29,6 +29,7 @@ from atmosbox.engine.liquid.reservoir import (
     rain_out,
     wait,
 )
+from tests.engine.boxes import held, random_state
 
 NUMBER = 20_000
 PHI, C_L, K, MASS, AREA = 3.0, 9.0, 1e-2, 0.62, 7.0
@@ -40,10 +41,6 @@ SHAPE = 3.5
 def ledger_of(number, kT=1.0, nuclei=0.0, substance=WATER, **options):
     liquid = Mist(substance, number=number, kT=kT, nuclei=nuclei, area=AREA, **options)
     return new_reservoir(liquid, liquid.area, number, 0, 0)
-
-
-def random_state(seed=5):
-    return np.random.SeedSequence(seed).generate_state(1, np.uint64)
 
 
 def rate_at(ledger, energy):
@@ -66,11 +63,6 @@ def microcanonical(energy, number, nuclei, phi=PHI, sticking=1.0):
 
 def hertz_knudsen(kT, substance=WATER):
     return AREA * substance.saturation_pressure(kT) / math.sqrt(2.0 * math.pi * substance.mass * kT)
-
-
-def held(sample, mean, variance):
-    """Return whether the sample's mean lies within 4 standard errors of the right one."""
-    return abs(np.mean(sample) - mean) < 4.0 * math.sqrt(variance / len(sample))
 
 
 # ------------------------------------------------------------------ how fast

@@ -7,7 +7,6 @@ kernels of the exact engine that no scene has: they are left to the validate tie
 import math
 import subprocess
 import sys
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -35,10 +34,10 @@ from atmosbox.engine.liquid import moist_parcelset
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 from atmosbox.scene.statistics import block_average
+from tests.engine.boxes import SMOOTH, TURNING, WARM, Pulse, apart
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 
-SMOOTH, TURNING, WARM = (Specular(),) * 6, (Periodic(),) * 6, (HeatBath(1.0),) * 6
 LIFTED = (*SMOOTH[:5], Piston())
 PHI, MASS = 8.0, 0.62
 ENGINES = {"exact": MoistParcelSet, "dsmc": MoistDsmcParcel}
@@ -55,17 +54,6 @@ def water(saturation=0.1, **changes):
 def liquid_of(kind, substance=None, area=60.0, **facts):
     """Return a mist of this area, or a pool."""
     return kind(substance or water(), **({"area": area} if kind is Mist else {}), **facts)
-
-
-@dataclass
-class Pulse:
-    """A driver that moves the piston up and down."""
-
-    interval: float = 0.75
-    speeds: tuple = (0.3, -0.45, 0.0, -0.15, 0.3)
-
-    def velocity(self, parcel):
-        return self.speeds[round(parcel.time / self.interval) % len(self.speeds)]
 
 
 def up_and_down(pressure):
@@ -122,11 +110,8 @@ def box(engine, name, **changes):
 
 def deepest_overlap(parcel):
     """Return how deep a pair of molecules overlaps [length], looking at all pairs and images."""
-    position = parcel.snapshot().position
-    away = position[:, None] - position[None, :]
-    away -= np.where(parcel.periodic, parcel.length * np.rint(away / parcel.length), 0.0)
-    touching = 0.5 * (parcel.diameter[:, None] + parcel.diameter[None, :])
-    overlap = touching - np.sqrt(np.sum(away**2, axis=-1))
+    position, radius = parcel.snapshot().position, 0.5 * parcel.diameter
+    overlap = radius[:, None] + radius[None, :] - apart(position, position, parcel.length, parcel.periodic)
     np.fill_diagonal(overlap, -math.inf)
     return overlap.max(initial=-math.inf)
 

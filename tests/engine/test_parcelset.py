@@ -4,7 +4,6 @@ The boxes below need the kernels that `test_reference` needs, and no others: eac
 """
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
@@ -19,26 +18,10 @@ from atmosbox.engine import (
     Specular,
     StalledError,
 )
-from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.exact.reference import Reference
+from tests.engine.boxes import SMOOTH, TURNING, Pulse, apart, many_events
 
-many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
-
-SMOOTH = (Specular(),) * 6
-TURNING = (Periodic(),) * 6
-
-
-@dataclass
-class Pulse:
-    """A driver that moves the piston out and in, and records when it was called."""
-
-    interval: float = 0.75
-    speeds: tuple = (0.1, -0.15, 0.0, -0.05, 0.1)
-    asked: list = field(default_factory=list)
-
-    def velocity(self, parcel):
-        self.asked.append(parcel.time)
-        return self.speeds[round(parcel.time / self.interval) % len(self.speeds)]
+GENTLE = (0.1, -0.15, 0.0, -0.05, 0.1)
 
 
 def lattice(number, sides, diameter):
@@ -70,7 +53,7 @@ def box(name, number=40, **changes):
     if name == "equal":
         made |= {"walls": (bath, Specular(), bath, bath, HeatBath(1.0), Specular())}
     elif name == "piston":
-        made |= {"walls": (*(Specular(),) * 4, HeatBath(1.5), Piston()), "gravity": 0.3, "driver": Pulse()}
+        made |= {"walls": (*(Specular(),) * 4, HeatBath(1.5), Piston()), "gravity": 0.3, "driver": Pulse(speeds=GENTLE)}
     elif name == "points":
         made |= {"walls": (*(bath,) * 2, *SMOOTH[:4]), "diameter": 0.0}
     elif name == "mixed":
@@ -88,7 +71,7 @@ def box(name, number=40, **changes):
             "walls": (*TURNING[:4], HeatBath(1.0), Piston()),
             "gravity": 0.3,
             "rotation": random.choice([0.0, 2.0, 3.0], number),
-            "driver": Pulse(),
+            "driver": Pulse(speeds=GENTLE),
         }
     return made | changes
 
@@ -99,11 +82,8 @@ by_name = pytest.mark.parametrize("name", NAMES)
 
 def least_gap(parcel):
     """Return the smallest distance of two molecules minus that of contact, over all pairs and images."""
-    position = parcel.snapshot().position
-    away = position[:, None] - position[None, :]
-    away -= np.array(parcel.periodic) * parcel.length * np.rint(away / parcel.length)
-    touching = 0.5 * (parcel.diameter[:, None] + parcel.diameter[None, :])
-    gaps = np.sqrt(np.sum(away**2, axis=-1)) - touching
+    position, radius = parcel.snapshot().position, 0.5 * parcel.diameter
+    gaps = apart(position, position, parcel.length, parcel.periodic) - radius[:, None] - radius[None, :]
     return gaps[np.triu_indices(len(position), 1)].min()
 
 
@@ -164,11 +144,11 @@ def test_what_the_walls_take_up_is_what_the_molecules_lose(name):
 
 def test_a_driven_piston_is_one_constant_piston_after_another():
     smooth = (*SMOOTH[:5], Piston())
-    made = box("piston", number=5, walls=smooth, driver=Pulse(interval=0.5))
+    made = box("piston", number=5, walls=smooth, driver=Pulse(interval=0.5, speeds=GENTLE))
     parcel = ParcelSet(**made)
     arguments = {key: value for key, value in made.items() if key not in ("driver", "seed")}
     hits = 0
-    for turn, speed in enumerate(np.tile(Pulse().speeds, 6)):
+    for turn, speed in enumerate(np.tile(GENTLE, 6)):
         reference = Reference(**arguments | {"walls": (*SMOOTH[:5], Piston(speed))})
         reference.advance(0.5)
         parcel.advance(0.5 * (turn + 1))
@@ -230,7 +210,7 @@ def test_time_reads_what_was_asked_for_even_while_nothing_happens():
 
 
 def test_the_driver_is_asked_at_the_multiples_of_its_interval():
-    driver = Pulse()
+    driver = Pulse(speeds=GENTLE)
     parcel = ParcelSet(**box("piston", driver=driver))
     for time in (0.1, 0.75, 2.0, 2.0, 4.4):
         parcel.advance(time)

@@ -8,70 +8,26 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import (
-    FollowPressure,
-    HeatBath,
-    Mist,
-    Periodic,
-    Piston,
-    Pool,
-    Specular,
-    Substance,
-    random_positions,
-)
-from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.exact.cells import overlapped
 from atmosbox.engine.exact.rows import MOST, name_in
 from atmosbox.engine.liquid import moist_parcelset
-from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from tests.engine.boxes import SMOOTH, many_events
+from tests.engine.test_moist import BOXES, OWN_KERNELS, liquid_of, moist, water
 
-many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+DIAMETER = 0.8
 
-TURNING = (Periodic(),) * 6
-SMOOTH = (Specular(),) * 6
-MASS, DIAMETER = 0.62, 0.8
-WATER = Substance(MASS, DIAMETER, 8.0, 9.0, 0.1 * math.exp(8.0))
-WALLS = {
-    "mist": (HeatBath(1.0),) * 6,
-    "pool": (*(HeatBath(1.0),) * 4, Specular(), HeatBath(1.0)),
-    "lifted mist": (*SMOOTH[:5], Piston()),
-    "periodic": TURNING,
-    "mist under a piston": (*TURNING[:4], Specular(), Piston(-0.05)),
-    "pool under a piston": (*TURNING[:4], Specular(), Piston(-0.05)),
-}
-OWN_KERNELS = ("periodic", "mist under a piston", "pool under a piston")  # no scene has such a box
+
+def box(name, substance=None, *, air=20, vapour=10, number=30, area=60.0, **options):
+    """Return a box of air and vapour at random places, with its liquid; compiled code lifts molecules of one size."""
+    kind, walls, driver = BOXES[name]
+    substance = substance or water(diameter=1.0 if name == "lifted mist" else DIAMETER)
+    liquid = liquid_of(kind, substance, area, number=number, nuclei=50.0)
+    return moist(liquid, air, vapour, **{"walls": walls, "driver": driver and driver()} | options)
+
+
 by_name = pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.validate if name in OWN_KERNELS else ()) for name in WALLS]
+    "name", [pytest.param(name, marks=pytest.mark.validate if name in OWN_KERNELS else ()) for name in BOXES]
 )
-
-
-def box(name, *, air=20, vapour=10, sides=(5.5, 5.5, 6.0), number=30, seed=9, substance=WATER, **options):
-    """Return a box of air and vapour at random places, with its liquid."""
-    rng = np.random.default_rng(seed)
-    walls = options.pop("walls", WALLS[name])
-    driver = None
-    if name == "lifted mist":  # compiled code lifts molecules of one size
-        substance = Substance(MASS, 1.0, 8.0, 9.0, 0.1 * math.exp(8.0))
-        driver = FollowPressure([0.0, 100.0], [0.3, 0.6], mean_free_time=0.5)
-    facts = {"number": number, "nuclei": 50.0} | options
-    liquid = Pool(substance, **facts) if "pool" in name else Mist(substance, **{"area": 60.0} | facts)
-    mass = np.r_[np.full(vapour, MASS), np.ones(air)]
-    diameter = np.r_[np.full(vapour, substance.diameter), np.ones(air)]
-    rotation = np.r_[np.full(vapour, 3.0), np.full(air, 2.0)]
-    periodic = tuple(isinstance(wall, Periodic) for wall in walls[::2])
-    return MoistParcelSet(
-        random_positions(sides, diameter, rng, periodic=periodic),
-        rng.standard_normal((air + vapour, 3)) / np.sqrt(mass)[:, None],
-        length=sides,
-        walls=walls,
-        driver=driver,
-        mass=mass,
-        diameter=diameter,
-        rotation=rotation,
-        rotational_energy=rng.standard_gamma(0.5 * rotation),
-        liquid=liquid,
-        seed=seed,
-    )
 
 
 def as_written(kernel):
@@ -153,9 +109,8 @@ def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypa
 def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
     monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
     sides = np.array([4.0, 5.0, 6.0])
-    volatile = Substance(MASS, DIAMETER, 2.0, 9.0, 2.0 * math.exp(2.0))
-    wide = {} if name == "pool" else {"area": 200.0}
-    parcel = box(name, air=1, vapour=0, sides=tuple(sides), number=5, substance=volatile, **wide)
+    volatile = water(2.0, binding_energy=2.0, diameter=DIAMETER)
+    parcel = box(name, volatile, air=1, vapour=0, sides=tuple(sides), number=5, area=200.0)
     places, seen = [], [0]
 
     def check(time):
@@ -190,8 +145,8 @@ def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
 )
 def test_rows_grow_where_many_leave_a_pool_at_once(number, crowded):
     # a small floor, from which more than fill a row, or the longest there is, come up within one mean free time
-    volatile = Substance(MASS, 0.05, 2.0, 9.0, 1e6 * math.exp(2.0))
-    parcel = box("pool", air=3, vapour=0, number=number, sides=(3.0, 3.0, 60.0), substance=volatile, walls=SMOOTH)
+    volatile = water(1e6, binding_energy=2.0, diameter=0.05)
+    parcel = box("pool", volatile, air=3, vapour=0, number=number, sides=(3.0, 3.0, 60.0), walls=SMOOTH)
     before = parcel._cells.stride
     parcel.advance(0.05)
     assert parcel._crowded is crowded

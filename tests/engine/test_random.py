@@ -11,29 +11,21 @@ import pytest
 from scipy import stats
 
 from atmosbox.engine.core.random import RUN, START, gamma, gaussian_pair, new_state, uniform
+from tests.engine.boxes import held, random_state
 
 NUMBER = 40_000
 WORD = 1 << 64
 
 
-def random_state(seed=11):
-    return np.random.SeedSequence(seed).generate_state(1, np.uint64)
-
-
-def held(sample, mean, variance):
-    """Return whether the sample's mean lies within 4 standard errors of the right one."""
-    return abs(np.mean(sample) - mean) < 4.0 * math.sqrt(variance / len(sample))
-
-
 @pytest.fixture(scope="module")
 def uniforms():
-    state = random_state()
+    state = random_state(11)
     return np.array([uniform(state) for _ in range(NUMBER)])
 
 
 @pytest.fixture(scope="module")
 def normals():
-    state = random_state()
+    state = random_state(11)
     return np.array([gaussian_pair(state) for _ in range(NUMBER)])
 
 
@@ -110,7 +102,7 @@ def test_the_energy_of_quadratic_degrees_of_freedom_is_gamma_distributed(degrees
 
 
 def test_no_degrees_of_freedom_hold_no_energy_and_draw_no_number():
-    state = random_state()
+    state = random_state(11)
     before = state.copy()
     assert gamma(0.0, state) == 0.0
     assert (state == before).all()

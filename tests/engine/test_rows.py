@@ -8,16 +8,13 @@ import functools
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atmosbox.engine import HeatBath, ParcelSet, Piston, Specular
-from atmosbox.engine.core.jit import COMPILED, kernel
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.exact.screening import BATCH, CLOSING, PATH, SLACK, screen
-
-many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
-SMOOTH = (Specular(),) * 6
+from tests.engine.boxes import SMOOTH, many_events
 
 
 @kernel(entry=True)

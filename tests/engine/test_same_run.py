@@ -38,13 +38,13 @@ from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 from atmosbox.scene.engines import choose
+from tests.engine.boxes import SMOOTH
 from tests.engine.test_drop import box as drop_box
 from tests.engine.test_moist import box as moist_box
 from tests.engine.test_parcelset import NAMES as EXACT
 from tests.engine.test_parcelset import box as exact_box
 
 WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
-SMOOTH = (Specular(),) * 6
 
 
 def gas(number=64, side=12.0, seed=5):

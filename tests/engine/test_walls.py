@@ -12,18 +12,10 @@ from scipy import stats
 
 from atmosbox.engine import HeatBath, Piston, Ramp, Specular
 from atmosbox.engine.core.walls import new_walls, resolve_wall_hit
+from tests.engine.boxes import held, random_state
 
 NUMBER = 30_000
 KT, MASS = 2.5, 4.0
-
-
-def random_state(seed=5):
-    return np.random.SeedSequence(seed).generate_state(1, np.uint64)
-
-
-def held(sample, mean, variance):
-    """Return whether the sample's mean lies within 4 standard errors of the right one."""
-    return abs(np.mean(sample) - mean) <= 4.0 * math.sqrt(variance / len(sample))
 
 
 def walls_with(law, wall=4, height=1.0):
