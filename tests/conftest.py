@@ -3,10 +3,10 @@
 unmarked
     Everything that guards the code, a few minutes in all: ``python -m pytest``. Each physical law is held to
     the accuracy that its own sampling allows, with fixed seeds.
-``@pytest.mark.validate``
-    Long statistical tests with smaller error bars. They are left out unless asked for:
-    ``--validate`` runs them with the rest, ``-m validate`` alone, and a test named by its node id
-    (``file.py::test_name``) runs in any case.
+``@pytest.mark.nightly``
+    Long statistical tests with smaller error bars, the site, pages of every scene at every size, copies of the package.
+    They are left out unless asked for: ``--nightly`` runs them with the rest, ``-m nightly`` alone, and a test named by
+    its node id (``file.py::test_name``) runs in any case.
 ``@pytest.mark.soak``
     Runs of an hour, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long, ``--soak-report FILE``
     writes their results to a file, line by line.
@@ -17,6 +17,7 @@ unmarked
 Timings are never tests; they live in ``benchmarks/``. Every warning is an error.
 """
 
+import functools
 import gc
 import json
 import os
@@ -38,13 +39,17 @@ settings.load_profile("atmosbox")
 
 
 def pytest_addoption(parser):
-    parser.addoption("--validate", action="store_true", help="also run the long statistical tests")
+    parser.addoption("--nightly", action="store_true", help="also run the long tests")
     parser.addoption("--soak", type=float, default=1.0, help="length of the soak tests, as a share of the full one")
     parser.addoption("--soak-report", default=None, help="file to which soak and fuzz add figures, line by line")
     parser.addoption("--fuzz", type=int, default=1, help="how many times as many examples hypothesis tries")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
+    for item in items:
+        if item.get_closest_marker("validate"):
+            item.add_marker("nightly")
     named = any("::" in argument for argument in config.args)
     more = config.getoption("--fuzz")
     if more > 1:
@@ -58,7 +63,7 @@ def pytest_collection_modifyitems(config, items):
                 )
     if config.getoption("-m") or named:
         return
-    wanted = {"soak"} if config.getoption("--validate") else {"soak", "validate"}
+    wanted = {"soak"} if config.getoption("--nightly") else {"soak", "nightly"}
     left_out = [item for item in items if any(item.get_closest_marker(tier) for tier in wanted)]
     if left_out:
         config.hook.pytest_deselected(items=left_out)
@@ -153,3 +158,24 @@ def new_tab(browser):
 def usual_tab(new_tab):
     """The tab in which a file shows one page after the other: to start a tab takes longer than to load a page."""
     return new_tab()
+
+
+SMALL_RUNS = {
+    "temperature": {"molecules": 60, "duration": 2.0},
+    "lifting-dry": {"molecules": 60, "ascent": 20.0},
+    "atmosphere": {"molecules": 80},
+    "elastic-collisions": {"molecules": 20, "duration": 3.0},
+}
+
+
+@pytest.fixture(scope="session")
+def small_run():
+    """A function that makes a short run of a scene with its molecules, once for all tests; a test gets its own copy."""
+
+    @functools.cache
+    def made(scene):
+        import atmosbox
+
+        return atmosbox.run(scene, save_molecules=True, **SMALL_RUNS[scene])
+
+    return lambda scene: made(scene).copy(deep=True)

@@ -1,27 +1,22 @@
 """Films of runs: GIF and MP4, of molecules and of graphs, the same bytes twice, and what is refused."""
 
 import importlib.util
-import sys
 
 import numpy as np
 import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-import atmosbox
 from atmosbox import film
 from atmosbox.cli import app
-from atmosbox.errors import FileError, SettingError
+from atmosbox.errors import FileError
 from atmosbox.file import netcdf as output
 from atmosbox.file.molecules import molecules
 from atmosbox.film.film_file import sized
 from atmosbox.film.film_sheet import Sheet
-from atmosbox.film.graph import chosen
-from atmosbox.film.pace import MOST, pace
 from atmosbox.film.running import Running
-from atmosbox.plot.run_figure import panels_of
 from atmosbox.plot.theme import find, style
-from atmosbox.scene.panels import Line, Panel, to_json
+from tests.conftest import SMALL_RUNS
 
 LOOK = sized(find("notes"), "gif")
 
@@ -29,22 +24,11 @@ needs_ffmpeg = pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is 
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory):
+def runs(small_run, tmp_path_factory):
     """Short runs of some scenes, as datasets and as files."""
     folder = tmp_path_factory.mktemp("runs")
-    wanted = {
-        "temperature": {"molecules": 60, "duration": 2.0},
-        "lifting-dry": {"molecules": 60, "ascent": 20.0},
-        "atmosphere": {"molecules": 80},
-        "elastic-collisions": {"molecules": 20, "duration": 3.0},
-    }
-    return {
-        scene: (
-            atmosbox.run(scene, out=folder / f"{scene}.nc", save_molecules=True, **settings),
-            folder / f"{scene}.nc",
-        )
-        for scene, settings in wanted.items()
-    }
+    made = {scene: small_run(scene) for scene in SMALL_RUNS}
+    return {scene: (run, output.write(run, folder / f"{scene}.nc")) for scene, run in made.items()}
 
 
 @pytest.fixture(scope="module")
@@ -68,45 +52,7 @@ def refused(result, status=2):
 # The pace
 
 
-def test_a_film_takes_evenly_spaced_frames_and_ends_with_the_last():
-    frames = pace(1000, seconds=2.0, fps=25.0).frames
-    assert frames.size == 50
-    assert frames[-1] == 999
-    assert set(np.diff(frames)) <= {20, 21}
-
-
-def test_few_frames_are_shown_once_each_and_slower_if_a_length_is_wished():
-    assert pace(40).frames.tolist() == list(range(40))
-    assert pace(40, seconds=20.0).seconds == pytest.approx(20.0)
-    assert pace(40, seconds=20.0, fps=10.0).seconds == pytest.approx(4.0)
-
-
-def test_what_moves_smoothly_is_shown_at_twice_the_rate():
-    assert pace(1000, smooth=True).fps == 2.0 * pace(1000).fps
-
-
-def test_a_pace_that_is_none_is_refused():
-    for wish in [{"fps": 0.0}, {"fps": float("nan")}, {"seconds": -1.0}, {"seconds": 1e9}]:
-        with pytest.raises(SettingError, match="is not between"):
-            pace(100, **wish)
-
-
-def test_a_film_of_too_many_pictures_is_refused():
-    with pytest.raises(SettingError, match=f"more than the {MOST}"):
-        pace(100_000, fps=50.0, seconds=3600.0)
-
-
 # The pictures
-
-
-def test_pictures_have_their_size_and_change_with_the_clock(runs, sheets):
-    for scene, sheet in sheets.items():
-        with style(LOOK):
-            first, last = sheet.picture(0), sheet.picture(runs[scene][0].sizes["elapsed_time"] - 1)
-            again = sheet.picture(0)
-        assert first.shape == (450, 800, 3)
-        assert (first != last).any(axis=2).mean() > 0.005
-        assert (first == again).all()
 
 
 def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs, sheets):
@@ -148,35 +94,6 @@ def test_speeds_and_layers_grow_into_what_the_run_has_measured(runs):
     assert grown[known] == pytest.approx(runs["atmosphere"][0].number_density.values[known])
 
 
-def test_panels_of_two_kinds_are_filmed_and_no_misfits(runs):
-    def titles(scene):
-        dataset = runs[scene][0]
-        return [panel.title for panel in chosen(dataset, panels_of(dataset), Running(dataset))]
-
-    assert titles("temperature") == ["Cold molecules between warm walls", "Speeds follow Maxwell's law"]
-    assert titles("lifting-dry") == ["The parcel on its way", "A rising parcel cools"]
-    assert titles("elastic-collisions") == ["Light and heavy: the same energy", "Energy and momentum are conserved"]
-
-
-def test_a_run_of_one_frame_is_a_film_of_one_picture(runs, tmp_path):
-    path, made = film.save(runs["temperature"][0].isel(elapsed_time=slice(0, 1)), tmp_path / "one.gif")
-    assert made.frames.tolist() == [0]
-    with Image.open(path) as opened:
-        assert opened.n_frames == 1
-
-
-def test_molecules_whose_scene_has_no_graph_that_grows_are_filmed_alone(runs, tmp_path):
-    dataset = runs["atmosphere"][0].copy()
-    law = Line("layer_temperature_theory", "height", "law", "theory")
-    dataset.attrs["atmosbox_panels"] = to_json([Panel("profile", "A law", (law,))])
-    with style(LOOK):
-        sheet = Sheet(dataset, LOOK, molecules(dataset))
-        sheet.picture(0)
-    assert sheet.graphs == []
-    with pytest.raises(FileError, match="no graph that grows"):
-        film.save(dataset, tmp_path / "law.gif", graphs=True)
-
-
 # The files
 
 
@@ -194,7 +111,7 @@ def test_a_gif_has_the_pictures_asked_for_and_lasts_as_long(runs, tmp_path):
 
 
 @needs_ffmpeg
-@pytest.mark.parametrize("theme", ["notes", pytest.param("slides", marks=pytest.mark.validate)])
+@pytest.mark.parametrize("theme", ["notes", pytest.param("slides", marks=pytest.mark.nightly)])
 def test_an_mp4_is_what_presentations_play(runs, tmp_path, theme):
     import imageio_ffmpeg
 
@@ -206,34 +123,6 @@ def test_an_mp4_is_what_presentations_play(runs, tmp_path, theme):
     assert about["pix_fmt"].startswith("yuv420p")
     assert imageio_ffmpeg.count_frames_and_secs(str(path))[0] == 4
     assert [each.name for each in tmp_path.iterdir()] == ["lift.mp4"]
-
-
-def test_an_mp4_without_its_program_is_refused_with_what_to_install(runs, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    sentence = refused(command(runs["lifting-dry"][1], "--out", tmp_path / "lift.mp4"))
-    assert "type pip install 'atmosbox[movie]'" in sentence
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("kind", ["gif", pytest.param("mp4", marks=needs_ffmpeg)])
-def test_a_film_that_is_stopped_leaves_no_half_file(runs, tmp_path, kind):
-    def stop(done):
-        if done > 0.5:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        film.save(runs["temperature"][0], tmp_path / f"warm.{kind}", seconds=0.4, fps=10.0, progress=stop)
-    assert list(tmp_path.iterdir()) == []
-
-
-@needs_ffmpeg
-def test_a_film_without_its_end_is_refused(runs, tmp_path, monkeypatch):
-    import imageio_ffmpeg
-
-    monkeypatch.setattr(imageio_ffmpeg, "count_frames_and_secs", lambda path: (1, 0.1))
-    with pytest.raises(FileError, match="could not be written whole"):
-        film.save(runs["temperature"][0], tmp_path / "warm.mp4", seconds=0.2, fps=10.0)
-    assert list(tmp_path.iterdir()) == []
 
 
 # The command
@@ -264,24 +153,6 @@ def test_a_run_without_molecules_is_refused_with_the_flag_that_saves_them(bare):
     assert "--graphs" in sentence
 
 
-def test_the_graphs_alone_are_filmed_on_request(bare):
-    result = command(bare, "--graphs", "--seconds", "0.3")
-    assert result.exit_code == 0, result.output
-    with Image.open(bare.with_suffix(".gif")) as opened:
-        assert opened.n_frames == 3
-
-
 def test_a_run_without_a_frame_is_refused(runs, tmp_path):
     with pytest.raises(FileError, match="no frame to film"):
         film.save(runs["temperature"][0].isel(elapsed_time=slice(0, 0)), tmp_path / "none.gif")
-
-
-def test_what_cannot_be_filmed_so_is_refused_at_once(runs, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for words, said in [
-        (("--out", "film.avi"), "format = avi is unknown"),
-        (("--out", "film.gif", "--format", "mp4"), "does not go with the file name"),
-        (("--fps", "0"), "pictures a second"),
-    ]:
-        assert said in refused(command(runs["temperature"][1], *words))
-    assert list(tmp_path.iterdir()) == []

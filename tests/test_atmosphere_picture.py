@@ -61,14 +61,6 @@ def test_the_cloud_appears_when_the_parcel_has_passed_its_measured_base():
     assert np.isnan(ascent_of(below).base), "a base below the ground is none"
 
 
-def test_dry_air_makes_no_cloud_and_rain_without_a_cloud_is_drawn():
-    height = np.linspace(0.0, 6e3, 61)
-    assert drawn(lift(height), 60) == ["parcel"]
-    haze = {"cloud_liquid_water_mixing_ratio": np.full(61, 1e-4), "largest_haze_mixing_ratio": np.full(61, 2e-4)}
-    assert drawn(lift(height, **haze), 60) == ["parcel"]
-    assert drawn(lift(height, **haze, rain_mixing_ratio=1e-8 * height), 60) == ["parcel", "rain"]
-
-
 def test_a_way_that_goes_down_again_has_mountains_below_it_and_rain_where_it_fell():
     height = 2e3 * np.sin(np.linspace(0.0, np.pi, 41))
     rain = np.maximum.accumulate(np.where(height > 1.2e3, height - 1.2e3, 0.0)) * 1e-6

@@ -6,25 +6,18 @@ from matplotlib.figure import Figure
 from PIL import Image
 from typer.testing import CliRunner
 
-import atmosbox
 from atmosbox.cli import app
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.file.netcdf import write
 from atmosbox.plot import figure_with_box
-from atmosbox.plot.box_picture import FACES, BoxPicture, Camera, corners
+from atmosbox.plot.box_picture import BoxPicture
 from atmosbox.plot.theme import find
+from tests.conftest import SMALL_RUNS
 
 
 @pytest.fixture(scope="module")
-def runs():
-    """Short runs of some scenes, with their molecules."""
-    wanted = {
-        "temperature": {"molecules": 60, "duration": 2.0},
-        "lifting-dry": {"molecules": 60, "ascent": 20.0},
-        "atmosphere": {"molecules": 80},
-        "elastic-collisions": {"molecules": 20, "duration": 3.0},
-    }
-    return {scene: atmosbox.run(scene, save_molecules=True, **settings) for scene, settings in wanted.items()}
+def runs(small_run):
+    return {scene: small_run(scene) for scene in SMALL_RUNS}
 
 
 def picture(held):
@@ -33,31 +26,6 @@ def picture(held):
 
 def legend(dataset):
     return picture(molecules(dataset)).legend()
-
-
-def test_the_box_is_drawn_in_a_unit_that_can_be_read(runs):
-    small, large = (picture(molecules(runs[scene])) for scene in ("temperature", "atmosphere"))
-    assert (small.unit, large.unit) == ("nm", "km")
-    assert 1.0 < small.largest.max() < 1000.0
-    assert large.held.walls == ("periodic",) * 4 + ("heat_bath", "specular")
-
-
-def test_a_piston_moves_and_the_camera_sees_the_largest_box(runs):
-    held = molecules(runs["lifting-dry"])
-    assert held.walls[5] == "piston"
-    assert held.side[-1, 2] > 2.0 * held.side[0, 2]
-    camera = Camera(held.side[-1])
-    low, high = camera.limits(held.side[0])
-    least, most = camera.limits(held.side[-1])
-    assert (low >= least - 1e-12).all()
-    assert (high <= most + 1e-12).all()
-
-
-def test_every_wall_has_the_corners_that_lie_in_it():
-    ends = corners(np.array([1.0, 2.0, 3.0]))
-    for wall, face in enumerate(FACES):
-        axis, end = divmod(wall, 2)
-        assert set(ends[list(face)][:, axis]) == {end * (axis + 1.0)}
 
 
 def test_the_caption_says_what_is_tinted_and_how_large_molecules_are_drawn(runs):
@@ -113,15 +81,6 @@ def test_the_box_is_drawn_at_the_start_half_way_and_at_the_end_over_all_panels(r
     said = " ".join(text.get_text() for text in drawn.texts)
     assert f"{run.parcel_pressure.values[-1] / 100:.0f} hPa" in said
     assert "grey lid: piston" in drawn.get_supxlabel()
-
-
-@pytest.mark.parametrize(
-    ("theme", "scenes"), [("notes", ("atmosphere", "elastic-collisions")), ("slides", ("temperature", "atmosphere"))]
-)
-def test_every_kind_of_box_has_its_figure(runs, theme, scenes):
-    for scene in scenes:
-        drawn = figure_with_box(runs[scene], theme)
-        assert len([text for text in drawn.texts if text.get_text().startswith("t = ")]) == 3
 
 
 def test_the_command_draws_the_box_and_says_what_a_run_without_molecules_lacks(runs, tmp_path):

@@ -1,6 +1,5 @@
 """The file of a run that goes on, is killed, or is finished."""
 
-import errno
 import inspect
 import json
 import os
@@ -13,11 +12,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from atmosbox.errors import DiskFullError, FileError
+from atmosbox.errors import FileError
 from atmosbox.file import output_lock
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.dataset import dataset
-from atmosbox.file.netcdf import read, write
+from atmosbox.file.netcdf import read
 from atmosbox.file.provenance import global_attributes
 
 
@@ -46,13 +45,6 @@ def child(code, *arguments, **options):
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, **options)
 
 
-def failing(number):
-    def fail(*_arguments, **_options):
-        raise OSError(number, os.strerror(number))
-
-    return fail
-
-
 def frames_in(path):
     return read(path).sizes["elapsed_time"]
 
@@ -65,13 +57,6 @@ def test_a_checkpoint_keeps_the_run_so_far_and_the_finished_run_takes_its_place(
     assert checkpoint.finish(run_so_far(5)) == tmp_path / "run.nc"
     assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
     assert frames_in(tmp_path / "run.nc") == 5
-
-
-def test_a_checkpoint_refuses_a_bad_place_before_the_run(tmp_path):
-    write(run_so_far(3), tmp_path / "run.nc")
-    with pytest.raises(FileError, match="force=True"):
-        Checkpoint(tmp_path / "run.nc")
-    assert Checkpoint(tmp_path / "run.nc", force=True).finish(run_so_far(5)) == tmp_path / "run.nc"
 
 
 def test_a_checkpoint_waits_and_takes_less_than_a_fiftieth_of_the_time(tmp_path, monkeypatch):
@@ -95,49 +80,12 @@ def test_a_checkpoint_waits_and_takes_less_than_a_fiftieth_of_the_time(tmp_path,
     assert 1000.0 - clock.written[-1] < 100.0
 
 
-def test_a_dataset_is_made_only_when_it_is_written(tmp_path):
-    checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=3600.0)
-    assert not checkpoint(pytest.fail)
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_full_disk_during_the_run_keeps_the_part(tmp_path, monkeypatch):
-    checkpoint = Checkpoint(tmp_path / "run.nc")
-    checkpoint.save(run_so_far(3))
-    monkeypatch.setattr(os, "fsync", failing(errno.ENOSPC))
-    with pytest.raises(DiskFullError, match=r"run\.part\.nc, which stays as it was"):
-        checkpoint.finish(run_so_far(5))
-    checkpoint.release()
-    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
-    assert frames_in(checkpoint.part) == 3
-
-
 def test_a_file_that_appears_during_the_run_is_not_overwritten(tmp_path):
     checkpoint = Checkpoint(tmp_path / "run.nc")
     (tmp_path / "run.nc").write_text("another's")
     with pytest.raises(FileError, match=r"run\.part\.nc"):
         checkpoint.finish(run_so_far(5))
     assert (tmp_path / "run.nc").read_text() == "another's"
-    assert frames_in(checkpoint.part) == 5
-
-
-def test_a_finished_run_that_cannot_take_its_name_stays_in_its_part(tmp_path):
-    checkpoint = Checkpoint(tmp_path / "run.nc", force=True)
-    (tmp_path / "run.nc").mkdir()
-    with pytest.raises(FileError, match="could not be written"):
-        checkpoint.finish(run_so_far(5))
-    assert frames_in(checkpoint.part) == 5
-
-
-def test_a_part_of_an_earlier_run_is_told_of_and_kept_until_it_is_replaced(tmp_path):
-    killed = Checkpoint(tmp_path / "run.nc")
-    killed.save(run_so_far(3))
-    killed.release()
-    checkpoint = Checkpoint(tmp_path / "run.nc")
-    assert checkpoint.stale
-    checkpoint.release()
-    assert frames_in(checkpoint.part) == 3
-    checkpoint.save(run_so_far(5))
     assert frames_in(checkpoint.part) == 5
 
 
@@ -191,16 +139,6 @@ checkpoint.release()
     Checkpoint(path).begin().release()
 
 
-def test_the_lock_of_a_run_that_was_killed_counts_for_nothing(tmp_path):
-    path = tmp_path / "run.nc"
-    with child("Checkpoint(sys.argv[1]).begin(); print(flush=True); time.sleep(60)", path) as process:
-        process.stdout.readline()
-        process.kill()
-    assert [each.name for each in tmp_path.iterdir()] == [".run.nc.lock"]
-    Checkpoint(path).begin().release()
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.parametrize("locks", [True, False])
 def test_a_lock_without_the_systems_help_is_believed_as_long_as_its_owner_lives(tmp_path, monkeypatch, locks):
     """A shared folder may have no locks, and the owner may be on another computer."""
@@ -221,20 +159,3 @@ def test_a_lock_without_the_systems_help_is_believed_as_long_as_its_owner_lives(
     os.utime(lock, (long_ago, long_ago))
     Checkpoint(tmp_path / "run.nc").begin().release()
     assert not list(tmp_path.iterdir())
-
-
-def test_a_run_killed_at_some_moment_leaves_a_file_that_opens(tmp_path):
-    code = """
-checkpoint = Checkpoint(sys.argv[1])
-for frames in range(1, 10_000):
-    checkpoint.save(run_so_far(frames))
-    print(frames, flush=True)
-"""
-    with child(code, tmp_path / "run.nc") as process:
-        while int(process.stdout.readline()) < 4:
-            pass
-        time.sleep(0.013)
-        process.kill()
-    found = read(tmp_path / "run.part.nc")
-    assert found.sizes["elapsed_time"] >= 4
-    assert found.air_temperature.values[-1] == 300.0 + found.sizes["elapsed_time"]

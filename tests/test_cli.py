@@ -13,20 +13,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import get_args
 
 import pytest
-import typer
 import xarray as xr
 
-import atmosbox
-from atmosbox import scenarios, version
+from atmosbox import scenarios
 from atmosbox.cli import check, terminal
-from atmosbox.cli.option import Format, Theme, _completed
-from atmosbox.cli.output_name import FIGURES
+from atmosbox.cli.option import _completed
 from atmosbox.cli.request import gather
 from atmosbox.errors import EngineError
-from atmosbox.file import checkpoint, provenance
+from atmosbox.file import checkpoint
 from atmosbox.file import netcdf as output
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Discs
@@ -34,13 +30,11 @@ from atmosbox.simulation import runner
 from atmosbox.text import progress, report, table
 from tests.few_frames import cut
 from tests.in_process import typed
-from tests.test_restart import OFTEN
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ("list", "info", "run", "plot", "check")
 SCENE = "elastic-collisions"
 SHORT = ("run", SCENE, "--set", "duration=2s")  # a fraction of a second
-LONG = ("run", "temperature", "--set", "duration=4000ns")  # minutes
 HEAVY = ("numba", "xarray", "netCDF4", "matplotlib", "metpy", "pint", "scipy", "pandas")
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and terminals are those of POSIX")
@@ -110,18 +104,13 @@ def planned(*words):
 # Help
 
 
-def test_the_help_of_a_command_has_examples_that_use_options_that_exist_at_every_width():
+def test_the_help_of_a_command_has_examples_that_use_options_that_exist():
     for command in COMMANDS:
-        for width in ("40", "80", "200"):
-            result = atmosbox_in_process(command, "--help", COLUMNS=width)
-            assert result.exit_code == 0
-            options, found, examples = result.stdout.partition("Examples:\n")
-            assert found
-            lines = examples.strip().splitlines()
-            assert len(lines) >= 2
-            if width == "200":
-                assert all(line.strip().startswith(f"atmosbox {command}") for line in lines)
-                assert set(re.findall(r"--[a-z-]+", examples)) <= set(re.findall(r"--[a-z-]+", options))
+        result = atmosbox_in_process(command, "--help", COLUMNS="200")
+        options, found, examples = result.stdout.partition("Examples:\n")
+        assert found
+        assert all(line.strip().startswith(f"atmosbox {command}") for line in examples.strip().splitlines())
+        assert set(re.findall(r"--[a-z-]+", examples)) <= set(re.findall(r"--[a-z-]+", options))
 
 
 def test_what_must_be_there_at_once_waits_for_nothing_heavy(folder):
@@ -153,71 +142,74 @@ def test_a_high_temperature_without_a_unit_is_said_to_be_in_degrees_celsius():
         assert result.stderr == (note if told else "")
 
 
-def test_a_figure_of_a_scene_that_was_run_is_offered_its_file(folder):
-    assert "did you mean" not in refused(atmosbox_in_process("plot", "temperature"))
-    Path("temperature.nc").touch()
-    assert "temperature does not exist: did you mean temperature.nc" in refused(
-        atmosbox_in_process("plot", "temperature")
-    )
+REFUSED = [
+    (["run", SCENE, "--no-such-option"], "--no-such-option"),
+    (["no-such-command"], "no-such-command"),
+    (["plot"], "atmosbox plot"),
+    (["run", "temperature", "--temperature", "30"], "give temperature=30, or --set temperature=30"),
+    (["run", "temperature", "--temperature=30degC"], "give temperature=30degC"),
+    (["run", "temperature", "--set", "temperature", "=", "30"], "write temperature=30"),
+    (["run", "temperature", "temperature=", "30"], "write temperature=30"),
+    (["run", "temperature", "temperature=30", "degC"], "write temperature=30degC"),
+    (["run", "temperature", "temperature", "30"], "temperature=30"),
+    (["run", "temperature", "--forse"], "--force"),
+    (["run", "temperature", "temperature="], "has no value: give --set temperature=value"),
+    (["run", "temperature", "temperature"], "temperature is a setting and has no value: give temperature=VALUE"),
+    (["run", "temperature", "-temperature", "30"], "give temperature=30"),
+    (["run", "temperature", "rotation=maybe"], "give one of molecules, temperature"),
+    (["run", "temperature", "--set"], "--set NAME=VALUE"),
+    (["run", "temperature.nc"], "atmosbox run --from temperature.nc"),
+    (["set", "temperature=30"], "atmosbox run SCENE --set temperature=30"),
+    (["set", "temperature", "30"], "atmosbox run SCENE --set temperature=30"),
+    (["temperature", "temperature=30"], "atmosbox run temperature temperature=30"),
+    (["start", "temperature"], "atmosbox run temperature"),
+    (["lsit"], "atmosbox list"),
+    (["--foo"], "atmosbox --help"),
+    (["list", "--json=3"], "--json takes no value"),
+    (["info"], "atmosbox info lifting-dry"),
+    (["info", "elastic-colisions"], SCENE),
+    (["info", "temperature", "temperature=30"], "atmosbox info takes no settings"),
+    (["prepare", "no-such-scene"], "atmosbox list"),
+    (["plot", "a.nc", "b.nc"], "atmosbox compare a.nc b.nc"),
+    (["plot", "x.nc", "--theme", "slide"], "one of notes, slides: give --theme slides"),
+    (["view"], "atmosbox view temperature.nc"),
+    (["animate", "x.nc", "--fps", "fast"], "--fps = fast is not a number"),
+    (["run"], "No scene"),
+    (["run", "no-such-scene"], "atmosbox list"),
+    (["run", "./no_such.py"], "no_such.py"),
+    (["run", SCENE, "--set", "duration"], '"="'),
+    (["run", SCENE, "--set", "duration=2degC"], "--set duration="),
+    (["run", SCENE, "--seed", "x"], "--set seed="),
+    (["run", SCENE, "--out", "no/such/folder/x.nc"], "mkdir"),
+    (["run", SCENE, "--out", "lift.png"], "atmosbox plot lift.nc --out lift.png"),
+    (["run", SCENE, "--config", "no.toml"], "no.toml"),
+    (["run", "--from", "no.nc"], "no.nc"),
+    (["run", "temperature", "--config", "discs.toml"], SCENE),
+    (["run", "--config", "evil.toml"], "atmosbox run ./evil.py --config evil.toml"),
+    (["run", "temperature", "--accuracy", "sketch", "--engine", "stepped:applet"], "picks the engine itself"),
+    (["sheet", SCENE, "--set", "duration=25m"], "is a length"),
+    (["sheet", "temperature", "--lab", "--engine", "dsmc"], "exact engine"),
+    (["sweep", SCENE, "--vary", "molecules=10,20", "--jobs", "0"], "give --jobs 1"),
+    (["sweep", SCENE, "--vary", "molecules=10,20", "--members", "many"], "give --members 8"),
+    (["sweep", SCENE, "--vary", "molecules=10,20", "--seed", "-1"], "give --set seed=0"),
+    (["sweep", SCENE, "--vary", "molecules=10,20", "--jobs", "2", "--scheduler", "tcp://a:1"], "leave one of them out"),
+    (["sweep", SCENE, "--vary", "molecules=10,20", "--out", "figure.png"], "name of a figure"),
+    (["live", "--no-browser", "temperature", "--port", "0"], "port = 0"),
+    (["live", "--no-browser", "temperature", "--set", "molecules=0"], "molecules = 0"),
+    (["tradeoff", SCENE, "--budget", "5 km"], "--budget 40s"),
+    (["tradeoff", SCENE, "--seed", "-1"], "--seed"),
+    (["tradeoff", SCENE, "--set", "molecules=none"], "molecules"),
+]
+"""What is typed, and what the one sentence of the refusal must say: the value, the range or the command to type."""
 
 
-@pytest.mark.parametrize(("scene", "settings"), [(SCENE, {}), ("evaporation", {"molecules": 300, "pool": 50})])
-def test_what_is_told_of_a_scene_is_what_its_box_is(scene, settings):
-    prepared = runner.prepare(scene, settings)
-    assert dict(runner.card(prepared).facts) == dict(runner.build(prepared).facts)
-
-
-def test_the_version_is_that_of_the_package():
-    assert atmosbox_in_process("--version").stdout == f"atmosbox {atmosbox.__version__}\n"
-
-
-def test_a_wrong_usage_ends_with_2(folder):
-    for words in [
-        ["run", SCENE, "--no-such-option"],
-        ["no-such-command"],
-        ["info"],
-        ["plot"],
-        ["plot", "x.nc", "--theme", "z"],
-    ]:
-        refused(atmosbox_in_process(*words))
-        assert list(folder.iterdir()) == []
-
-
-def test_a_setting_needs_no_option_and_another_spelling_is_answered_with_the_users_own_value(folder, no_computing):
-    assert planned(SCENE, "duration=2s", "seed=3")["settings"]["duration"] == 2.0
-    Path("a.toml").write_text(f'scene = "{SCENE}"', encoding="utf-8")
-    assert planned("--config", "a.toml", "duration=2s")["settings"]["duration"] == 2.0
-    assert planned(SCENE, "--out", "a=b.nc")["file"] == "a=b.nc"
-    run = ["run", "temperature"]
-    for words, said in [
-        ([*run, "--temperature", "30"], "give temperature=30, or --set temperature=30"),
-        ([*run, "--temperature=30degC"], "give temperature=30degC"),
-        ([*run, "--set", "temperature", "=", "30"], "write temperature=30"),
-        ([*run, "temperature=", "30"], "write temperature=30"),
-        ([*run, "temperature=30", "degC"], "write temperature=30degC"),
-        ([*run, "temperature", "30"], "temperature=30"),
-        ([*run, "--forse"], "--force"),
-        (["set", "temperature=30"], "atmosbox run SCENE --set temperature=30"),
-        (["temperature", "temperature=30"], "atmosbox run temperature temperature=30"),
-        ([*run, "temperature="], "has no value: give --set temperature=value"),
-        ([*run, "temperature"], "temperature is a setting and has no value: give temperature=VALUE"),
-        ([*run, "-temperature", "30"], "give temperature=30"),
-        ([*run, "rotation=maybe"], "give one of molecules, temperature"),
-        (["run", "temperature.nc"], "atmosbox run --from temperature.nc"),
-        (["info", "temperature", "temperature=30"], "atmosbox info takes no settings"),
-        (["plot", "a.nc", "b.nc"], "atmosbox compare a.nc b.nc"),
-        (["view"], "atmosbox view temperature.nc"),
-        (["set", "temperature", "30"], "atmosbox run SCENE --set temperature=30"),
-        (["start", "temperature"], "atmosbox run temperature"),
-        (["lsit"], "atmosbox list"),
-        (["info"], "atmosbox info lifting-dry"),
-        (["plot", "x.nc", "--theme", "slide"], "one of notes, slides: give --theme slides"),
-        (["animate", "x.nc", "--fps", "fast"], "--fps = fast is not a number"),
-        (["list", "--json=3"], "--json takes no value"),
-        ([*run, "--set"], "--set NAME=VALUE"),
-        (["--foo"], "atmosbox --help"),
-    ]:
-        assert said in refused(atmosbox_in_process(*words)), words
+@pytest.mark.parametrize(("words", "said"), REFUSED, ids=lambda part: " ".join(part) if isinstance(part, list) else "")
+def test_what_cannot_be_is_one_sentence_with_what_to_type_and_writes_nothing(folder, no_computing, words, said):
+    Path("discs.toml").write_text(f'scene = "{SCENE}"', encoding="utf-8")
+    Path("evil.toml").write_text('scene = "./evil.py"', encoding="utf-8")
+    Path("evil.py").write_text("open('ran', 'w')", encoding="utf-8")  # a settings file never makes a program run
+    assert said in refused(atmosbox_in_process(*words))
+    assert sorted(path.name for path in folder.iterdir()) == ["discs.toml", "evil.py", "evil.toml"]
 
 
 # The scenes
@@ -225,52 +217,26 @@ def test_a_setting_needs_no_option_and_another_spelling_is_answered_with_the_use
 
 def test_list_has_every_scene_with_its_first_sentence():
     lines = atmosbox_in_process("list").stdout.splitlines()
+    listed = json.loads(atmosbox_in_process("list", "--json").stdout)["scenes"]
+    assert tuple(atmosbox_in_process("list", "--names").stdout.split()) == scenarios.names()
+    assert tuple(scene["name"] for scene in listed) == scenarios.names()
     for name in scenarios.names():
         (line,) = (line for line in lines if line.split()[:1] == [name])
         assert (scenarios.load(name).__doc__ or "").split("\n")[0] in line
-
-
-def test_list_names_prints_the_names_alone():
-    assert tuple(atmosbox_in_process("list", "--names").stdout.split()) == scenarios.names()
-
-
-def test_list_json_is_one_object():
-    listed = json.loads(atmosbox_in_process("list", "--json").stdout)["scenes"]
-    assert tuple(scene["name"] for scene in listed) == scenarios.names()
-    assert all(scene["summary"] for scene in listed)
-
-
-def test_the_shell_completes_the_names_of_scenes():
     assert _completed("elas") == [SCENE]
-    assert set(_completed("")) == set(scenarios.names())
 
 
-def test_info_shows_story_facts_and_every_parameter_at_every_width():
-    for name, width in [(SCENE, None), (SCENE, "40"), *((name, "80") for name in scenarios.names())]:
+def test_info_shows_story_facts_and_every_setting_and_nothing_is_cut():
+    for name, width in [(SCENE, "40"), *((name, "80") for name in scenarios.names())]:
         card = runner.card(runner.prepare(name, {}))
         shown = atmosbox_in_process("info", name, COLUMNS=width).stdout
         words = " ".join(shown.split())
         assert " ".join(card.story.replace("``", "").split()) in words
-        assert "``" not in shown
-        for parameter in card.parameters:
-            assert f"\n{parameter.name}" in shown
-            assert parameter.allowed in words
-        for fact, value in card.facts:
-            assert f"\n{fact}" in shown
-            assert value in words
-        if width is not None:
-            readable = max(int(width), 50)  # nothing is cut, and some words are long
-            assert max(map(len, shown.splitlines())) <= readable
-
-
-def test_info_json_has_what_a_program_needs():
+        assert all(f"\n{parameter.name}" in shown and parameter.allowed in words for parameter in card.parameters)
+        assert all(f"\n{fact}" in shown and value in words for fact, value in card.facts)
+        assert max(map(len, shown.splitlines())) <= max(int(width), 50)  # some words are long
     card = json.loads(atmosbox_in_process("info", SCENE, "--json").stdout)
     assert {"scene", "title", "story", "facts", "parameters", "expected_seconds"} == set(card)
-    assert {"name", "unit", "default", "low", "high", "choices", "kind", "help"} == set(card["parameters"][0])
-
-
-def test_info_of_an_unknown_scene_offers_the_nearest():
-    assert SCENE in refused(atmosbox_in_process("info", "elastic-colisions"))
 
 
 # A run
@@ -288,12 +254,6 @@ def test_a_run_prints_its_table_its_ledger_its_cost_its_file_and_what_to_type_ne
     assert result.stdout.endswith(f"\nfile: {SCENE}.nc\nnext: atmosbox plot {SCENE}.nc\n")
 
 
-def test_the_history_of_the_file_has_the_exact_command(folder):
-    atmosbox_in_process(*SHORT, "--out", "my run.nc")
-    expected = "atmosbox run elastic-collisions --set duration=2s --out 'my run.nc'"
-    assert output.read("my run.nc").attrs["history"].endswith(f": {expected}")
-
-
 def test_json_is_one_object_and_says_the_same(folder):
     result = atmosbox_in_process(*SHORT, "--json")
     found = json.loads(result.stdout)
@@ -306,22 +266,6 @@ def test_json_is_one_object_and_says_the_same(folder):
     assert found["ledger"]["closes"] is True
     assert found["collisions"] > 0
     assert found["next"] == f"atmosbox plot {SCENE}.nc"
-
-
-def test_quiet_prints_the_path_alone(folder):
-    result = atmosbox_in_process(*SHORT, "--quiet")
-    assert (result.stdout, result.stderr) == (f"{SCENE}.nc\n", "")
-
-
-def test_force_replaces_a_file(folder):
-    Path(f"{SCENE}.nc").write_text("mine", encoding="utf-8")
-    assert atmosbox_in_process(*SHORT, "--force").exit_code == 0
-    assert output.read(f"{SCENE}.nc").attrs["atmosbox_status"] == "complete"
-
-
-def test_what_an_earlier_run_left_is_not_replaced_in_silence(folder):
-    Path("x.part.nc").write_text("left", encoding="utf-8")
-    assert "x.part.nc is left from a run that was stopped" in atmosbox_in_process(*SHORT, "--out", "x.nc").stderr
 
 
 def test_a_second_run_gets_a_number_and_loses_nothing(folder):
@@ -358,30 +302,13 @@ def test_two_runs_at_once_write_two_files(folder, monkeypatch):
     assert sorted(path.name for path in folder.iterdir()) == [f"{SCENE}-2.nc", f"{SCENE}.nc"]
 
 
-def test_a_dry_run_asks_for_nothing_that_only_a_run_needs(folder, no_computing):
-    Path("x.nc").write_text("mine", encoding="utf-8")
-    assert planned(*SHORT[1:], "--out", "x.nc")["file"] == "x.nc"
-    assert [path.name for path in folder.iterdir()] == ["x.nc"]
-
-
 def test_a_dry_run_shows_everything_and_writes_nothing(folder, no_computing):
     result = atmosbox_in_process(*SHORT, "--dry-run")
-    assert result.exit_code == 0
     card = runner.card(runner.prepare(SCENE, {"duration": "2 s"}))
-    for fact, value in card.facts:
-        assert fact in result.stdout
-        assert value in result.stdout
-    for parameter in card.parameters:
-        assert parameter.name in result.stdout
+    assert all(fact in result.stdout and value in result.stdout for fact, value in card.facts)
     assert re.search(r"^duration +2 s +set$", result.stdout, re.MULTILINE)
     assert f"file: {SCENE}.nc (not written" in result.stdout
     assert list(folder.iterdir()) == []
-
-
-def test_verbose_says_on_stderr_what_is_run(folder):
-    result = atmosbox_in_process(*SHORT, "--verbose", "--json")
-    assert json.loads(result.stdout)["scene"] == SCENE
-    assert "duration" in result.stderr
 
 
 def test_the_molecules_are_saved_on_request_and_those_of_a_small_run_unasked(folder):
@@ -425,61 +352,10 @@ def test_seed_counts_before_set_before_config_before_an_earlier_run(folder, fini
     assert planned(*typed, "--seed", "7")["settings"]["seed"] == 7
 
 
-def test_a_setting_may_be_spelled_with_either_dash_in_every_place(folder):
-    Path("a.toml").write_text('scene = "lifting_dry"\n[settings]\ntop-pressure = 400\n', encoding="utf-8")
-    assert planned("--config", "a.toml", "--set", "top_pressure=500hPa")["settings"]["top_pressure"] == 500.0
-    assert planned("--config", "a.toml")["file"] == "lifting-dry.nc"
-
-
 def test_an_earlier_run_is_repeated_bit_for_bit(folder, finished):
     assert atmosbox_in_process("run", "--from", str(finished), "--out", "again.nc").exit_code == 0
     first, again = output.read(finished), output.read("again.nc")
     xr.testing.assert_equal(first, again)
-
-
-def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):
-    monkeypatch.setattr(version, "__version__", "99.0")
-    result = atmosbox_in_process("run", "--from", str(finished), "--dry-run")
-    assert result.exit_code == 0
-    assert "note: " in result.stderr
-
-
-@pytest.mark.parametrize("scene", ["./evil.py", "evil.py", "folder/evil"])
-def test_a_settings_file_never_makes_a_program_run(folder, scene):
-    Path("evil.py").write_text("open('ran', 'w')", encoding="utf-8")
-    Path("a.toml").write_text(f'scene = "{scene}"', encoding="utf-8")
-    assert f"atmosbox run {scene} --config a.toml" in refused(atmosbox_in_process("run", "--config", "a.toml"))
-    assert not Path("ran").exists()
-
-
-@pytest.mark.parametrize("option", ["--from", "--config"])
-def test_a_file_for_another_scene_is_refused(folder, finished, option):
-    Path("a.toml").write_text(f'scene = "{SCENE}"', encoding="utf-8")
-    path = str(finished) if option == "--from" else "a.toml"
-    sentence = refused(atmosbox_in_process("run", "temperature", option, path))
-    assert SCENE in sentence
-    assert "temperature" in sentence
-
-
-# Refusals
-
-
-def test_bad_input_is_one_sentence_and_leaves_nothing_behind(folder, no_computing):
-    cases = [
-        ([], "No scene"),
-        (["no-such-scene"], "atmosbox list"),
-        (["./no_such.py"], "no_such.py"),
-        ([SCENE, "--set", "duration"], '"="'),
-        ([SCENE, "--set", "duration=2degC"], "--set duration="),
-        ([SCENE, "--seed", "x"], "--set seed="),
-        ([SCENE, "--out", "no/such/folder/x.nc"], "mkdir"),
-        ([SCENE, "--out", "lift.png"], "atmosbox plot lift.nc --out lift.png"),
-        ([SCENE, "--config", "no.toml"], "no.toml"),
-        (["--from", "no.nc"], "no.nc"),
-    ]
-    for words, said in cases:
-        assert said in refused(atmosbox_in_process("run", *words))
-    assert list(folder.iterdir()) == []
 
 
 READERS = [
@@ -518,26 +394,6 @@ def test_no_path_is_a_bug(folder, no_computing, finished):
         assert sorted(folder.rglob("*")) == before, (words, name)
 
 
-@pytest.mark.parametrize(
-    ("attribute", "content"),
-    [
-        ("atmosbox_parameters", "[" * 3000),
-        ("atmosbox_parameters", '{"sweep": 3}'),
-        ("atmosbox_panels", '{"format": 1, "panels": [{"kind": "line", "title": "", "lines": 7}]}'),
-        ("atmosbox_headlines", '[["a"]]'),
-    ],
-)
-def test_a_file_with_odd_content_is_no_bug(folder, finished, monkeypatch, attribute, content):
-    monkeypatch.setattr(check, "conventions", lambda path: check.Conventions(True, "the checker takes a second"))
-    output.write(output.read(finished).assign_attrs({attribute: content}), "odd.nc")
-    status = [atmosbox_in_process(command, "odd.nc").exit_code for command in ("plot", "check")]
-    assert set(status) <= {0, 2, 3}
-    assert 2 in status
-    sentence = refused(atmosbox_in_process(("plot", "check")[status.index(2)], "odd.nc"))
-    assert "your own scene" not in sentence
-    assert "file" in sentence or "odd.nc" in sentence
-
-
 WRITERS = [
     ("nc", ["run", SCENE]),
     ("nc", ["sweep", SCENE, "--vary", "duration=1,2"]),
@@ -553,26 +409,19 @@ WRITERS = [
 """Commands that write a file, and the ending of its name."""
 
 
-def test_no_output_path_is_a_bug(folder, no_computing, finished):
-    """Whatever is at the path that a command is told to write, the answer is one sentence, and nothing is written."""
-    Path("folder").mkdir()
-    shutil.copy(finished, "whole.nc")
-    before = sorted(folder.rglob("*"))
-    commands = [words for _, words in WRITERS]
-    for words, name in itertools.product(commands, ("", "..", "folder", "whole.nc/x.nc")):
-        assert "bug" not in refused(atmosbox_in_process(*words, "-o", name))
-        assert sorted(folder.rglob("*")) == before, (words, name)
-
-
 @pytest.mark.parametrize(("ending", "words"), WRITERS, ids=lambda part: part[0] if isinstance(part, list) else part)
-def test_no_command_replaces_a_file_unasked(folder, no_computing, finished, ending, words):
+def test_no_command_replaces_a_file_unasked_or_writes_where_it_cannot(folder, no_computing, finished, ending, words):
+    Path("folder").mkdir()
     shutil.copy(finished, "whole.nc")
     made = Path("mine-headlines.csv" if ending == "csv" else f"mine.{ending}")  # a spreadsheet has several files
     made.write_text("mine", encoding="utf-8")
-    before = sorted(folder.iterdir())
-    assert "--force" in refused(atmosbox_in_process(*words, "-o", f"mine.{ending}"))
+    before = sorted(folder.rglob("*"))
+    for name in ("", "..", "folder", "whole.nc/x.nc", f"mine.{ending}"):
+        said = refused(atmosbox_in_process(*words, "-o", name))
+        assert ("--force" in said) == name.startswith("mine")
+        assert "bug" not in said
+        assert sorted(folder.rglob("*")) == before, (words, name)
     assert made.read_text(encoding="utf-8") == "mine"
-    assert sorted(folder.iterdir()) == before
 
 
 def test_a_default_name_that_is_in_use_gets_a_number(folder, finished):
@@ -596,46 +445,35 @@ def test_a_default_name_that_is_in_use_gets_a_number(folder, finished):
         assert Path(first).read_text(encoding="utf-8") == "mine"
 
 
-def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):
-    attributes = provenance.global_attributes({"scene": SCENE}, title="A box", command="a test")
-    output.write(xr.Dataset(attrs=attributes), "old.nc")
-    assert "does not say" in refused(atmosbox_in_process("run", "--from", "old.nc"))
-
-
 # Failures
 
 
-def failing(monkeypatch, error):
-    """Make every run fail."""
-
+@pytest.mark.parametrize(
+    ("error", "status", "said"),
+    [
+        (EngineError("Molecule 7 left the box at 0.3 ns."), 1, "error: Molecule 7 left the box at 0.3 ns."),
+        (KeyError("x\ny"), 1, "bug"),
+        (MemoryError(), 1, "fewer molecules"),
+        (KeyboardInterrupt(), 130, "stopped"),
+        (runner.Interrupted(None), 130, "nothing is kept"),
+    ],
+)
+def test_a_failed_run_ends_with_one_sentence_and_its_status_and_without_traceback(
+    folder, monkeypatch, error, status, said
+):
     def execute(*args, **kwargs):
         raise error
 
     monkeypatch.setattr(runner, "execute", execute)
+    result = atmosbox_in_process(*SHORT)
+    assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (status, "", 1)
+    assert said in result.stderr
+    assert list(folder.iterdir()) == []
+    if said == "bug":
+        assert "Traceback (most recent call last)" in atmosbox_in_process(*SHORT, "--verbose").stderr
 
 
-def test_a_failed_run_ends_with_1(folder, monkeypatch):
-    failing(monkeypatch, EngineError("Molecule 7 left the box at 0.3 ns."))
-    assert refused(atmosbox_in_process(*SHORT), 1) == "error: Molecule 7 left the box at 0.3 ns."
-
-
-def test_a_bug_is_one_sentence_and_a_traceback_only_if_asked_for(folder, monkeypatch):
-    failing(monkeypatch, KeyError("x\ny"))
-    sentence = refused(atmosbox_in_process(*SHORT), 1)
-    assert "bug" in sentence
-    assert "KeyError" in sentence
-    assert "--verbose" in sentence
-    result = atmosbox_in_process(*SHORT, "--verbose")
-    assert result.exit_code == 1
-    assert "Traceback (most recent call last)" in result.stderr
-
-
-def test_a_lack_of_memory_is_no_bug(folder, monkeypatch):
-    failing(monkeypatch, MemoryError())
-    assert "fewer molecules" in refused(atmosbox_in_process(*SHORT), 1)
-
-
-def test_a_ledger_that_does_not_close_ends_with_3_and_keeps_the_file(folder, monkeypatch):
+def test_a_run_whose_energy_budget_does_not_close_ends_with_3_and_keeps_the_file(folder, monkeypatch):
     execute = runner.execute
     monkeypatch.setattr(runner, "execute", lambda *a, **k: execute(*a, **k)._replace(ledger=1e-3))
     result = atmosbox_in_process(*SHORT)
@@ -643,26 +481,6 @@ def test_a_ledger_that_does_not_close_ends_with_3_and_keeps_the_file(folder, mon
     assert "energy budget: not closed" in result.stdout
     assert f"atmosbox check {SCENE}.nc" in result.stderr
     assert Path(f"{SCENE}.nc").exists()
-
-
-@pytest.mark.parametrize("place", ["prepare", "execute"])
-def test_ctrl_c_anywhere_ends_with_130_and_without_traceback(folder, monkeypatch, place):
-    def stop(*args, **kwargs):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(runner, place, stop)
-    result = atmosbox_in_process(*SHORT)
-    assert result.exit_code == 130
-    assert (result.stdout, result.stderr) == ("", "stopped\n")
-    assert list(folder.iterdir()) == []
-
-
-def test_a_run_stopped_before_its_first_frame_keeps_nothing_and_says_so(folder, monkeypatch):
-    failing(monkeypatch, runner.Interrupted(None))
-    result = atmosbox_in_process(*SHORT)
-    assert result.exit_code == 130
-    assert "nothing is kept" in result.stderr
-    assert list(folder.iterdir()) == []
 
 
 def stop_after(monkeypatch, fraction):
@@ -681,24 +499,20 @@ def stop_after(monkeypatch, fraction):
     monkeypatch.setattr(runner, "_BREATH", 0.0)
 
 
-def test_a_stopped_run_says_where_its_frames_are_and_how_to_see_them(folder, monkeypatch):
+@pytest.mark.parametrize("option", ["--no-verbose", "--json", "--quiet"])
+def test_a_stopped_run_says_where_its_frames_are_and_how_to_see_them(folder, monkeypatch, option):
     stop_after(monkeypatch, 0.5)
-    result = atmosbox_in_process(*SHORT)
+    result = atmosbox_in_process(*SHORT, *([] if option == "--no-verbose" else [option]))
     assert result.exit_code == 130
-    assert result.stdout == ""
-    assert f"atmosbox plot {SCENE}.part.nc" in result.stderr
     assert [path.name for path in folder.iterdir()] == [f"{SCENE}.part.nc"]
-    frames = int(re.search(r"(\d+) complete frames", result.stderr)[1])
-    assert output.read(f"{SCENE}.part.nc").sizes["elapsed_time"] == frames > 0
-
-
-@pytest.mark.parametrize("option", ["--json", "--quiet"])
-def test_a_stopped_run_tells_a_program_the_file_it_left(folder, monkeypatch, option):
-    stop_after(monkeypatch, 0.5)
-    result = atmosbox_in_process(*SHORT, option)
-    assert result.exit_code == 130
-    text = json.loads(result.stdout)["file"] if option == "--json" else result.stdout.strip()
-    assert text == f"{SCENE}.part.nc"
+    if option == "--no-verbose":
+        assert result.stdout == ""
+        assert f"atmosbox plot {SCENE}.part.nc" in result.stderr
+        frames = int(re.search(r"(\d+) complete frames", result.stderr)[1])
+        assert output.read(f"{SCENE}.part.nc").sizes["elapsed_time"] == frames > 0
+    else:
+        text = json.loads(result.stdout)["file"] if option == "--json" else result.stdout.strip()
+        assert text == f"{SCENE}.part.nc"
 
 
 def raise_inside(monkeypatch, home, name, call, number=signal.SIGINT):
@@ -714,7 +528,8 @@ def raise_inside(monkeypatch, home, name, call, number=signal.SIGINT):
     monkeypatch.setattr(home, name, pressed)
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=posix)])
+@posix
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_a_signal_while_a_frame_ends_keeps_the_frames_of_all_instruments(folder, monkeypatch, number, status):
     raise_inside(monkeypatch, Discs, "end_frame", 10, number)
     assert atmosbox_in_process(*SHORT).exit_code == status
@@ -730,62 +545,20 @@ def test_ctrl_c_while_the_finished_file_is_written_keeps_it(folder, monkeypatch)
     assert output.read(f"{SCENE}.nc").attrs["atmosbox_status"] == "complete"
 
 
-@posix
-def test_ctrl_c_stops_a_process_and_what_is_complete_is_kept(folder):
-    # a shell makes background processes ignore Ctrl-C, and their children inherit that
-    def listen():
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-    command = command_line(stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    command["args"] = [sys.executable, "-c", OFTEN, *LONG, "--out", "x.nc"]
-    process = subprocess.Popen(**command, preexec_fn=listen)
-    try:
-        deadline = time.monotonic() + 300.0  # the engine may have to be compiled
-        while not Path("x.part.nc").exists() and process.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        out, told = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    assert process.returncode == 130, told
-    assert out == ""
-    assert "Traceback" not in told
-    assert "atmosbox plot x.part.nc" in told
-    assert [path.name for path in folder.iterdir()] == ["x.part.nc"]
-    kept = output.read("x.part.nc")
-    assert kept.attrs["atmosbox_status"] == "interrupted"
-    assert kept.sizes["elapsed_time"] > 0
-
-
 # Streams
 
 
 @posix
-@pytest.mark.parametrize("words", [["list"], ["run", "--help"]])
-def test_a_reader_that_has_seen_enough_is_no_error(words):
-    reader, writer = os.pipe()
-    os.close(reader)
-    run = subprocess.run(**command_line(*words, stdout=writer, stderr=subprocess.PIPE), check=False)
-    os.close(writer)
-    assert run.stderr == ""
-    assert run.returncode in (0, 1)
-
-
-@posix
-def test_a_closed_stdout_is_no_error():
-    line = shlex.join([sys.executable, "-m", "atmosbox", "list"]) + " >&-"
-    options = command_line(stderr=subprocess.PIPE) | {"args": ["sh", "-c", line]}
-    run = subprocess.run(**options, check=False)
-    assert (run.returncode, run.stderr) == (0, "")
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
-def test_a_result_that_cannot_be_written_is_one_sentence():
-    with open("/dev/full", "w", encoding="utf-8") as full:
-        run = subprocess.run(**command_line("list", stdout=full, stderr=subprocess.PIPE), check=False)
-    assert run.returncode == 1
-    assert run.stderr.startswith("error: ")
-    assert run.stderr.count("\n") == 1
+@pytest.mark.parametrize(
+    ("line", "status", "said"), [("| head -c 1", 0, ""), (">&-", 0, ""), ("> /dev/full", 1, "error: ")]
+)
+def test_a_reader_that_has_seen_enough_is_no_error_and_a_full_disk_is_one_sentence(line, status, said):
+    options = {"env": {**os.environ, "PYTHONPATH": str(ROOT)}, "stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}
+    typed = f"set -o pipefail; {shlex.join([sys.executable, '-m', 'atmosbox', 'list'])} {line}"
+    run = subprocess.run(["bash", "-c", typed], text=True, check=False, **options)
+    assert run.returncode in (status, 1 if line[0] == "|" else status)
+    assert run.stderr.startswith(said)
+    assert run.stderr.count("\n") == bool(said)
 
 
 class Stream(io.StringIO):
@@ -854,27 +627,6 @@ def test_elsewhere_a_word_is_said_only_when_it_takes_long(monkeypatch, term):
     assert stream.getvalue() == "scene: compiling the engine, once\n"
 
 
-def test_a_terminal_says_that_the_engine_is_being_compiled(monkeypatch):
-    stream = Stream(tty=True)
-    monkeypatch.setattr(sys, "stderr", stream)
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("COLUMNS", "120")
-    monkeypatch.setattr(progress, "DELAY", 0.05)
-    with progress.progress("scene", quiet=False) as show:
-        show(0.0, "compiling the engine, once")
-        time.sleep(0.5)
-        show(0.5, "running")
-    assert "scene: compiling the engine, once" in stream.getvalue()
-
-
-def test_quiet_shows_no_progress(monkeypatch):
-    stream = Stream(tty=True)
-    monkeypatch.setattr(sys, "stderr", stream)
-    with progress.progress("scene", quiet=True) as show:
-        show(0.5, "running")
-    assert stream.getvalue() == ""
-
-
 # Tables and numbers
 
 
@@ -910,45 +662,11 @@ def test_a_measurement_has_the_digits_that_its_error_deserves():
         assert table.measurement(value, error) == shown
 
 
-def test_the_verdict_is_that_of_the_headline():
-    cases = [
-        (a_headline(error=0.1), "yes"),
-        (a_headline(error=0.01), "no"),
-        (a_headline(value=float("nan")), "no"),
-    ]
-    for headline, verdict in cases:
-        assert report.headline_lines([headline], 200)[1].split()[-1] == verdict
-    assert report.headline_lines([a_headline(theory=None, error=0.1)], 200)[0].split() == ["quantity", "measured"]
-
-
-def test_a_difference_that_only_the_model_explains_is_explained():
-    lines = report.headline_lines([a_headline(error=0.01, tolerance=0.5)], 200)
-    assert lines[1].endswith("±0.54 K          yes, with the stated model error")
-    assert lines[-1] == "expected within: 4 standard errors (chance) plus 0.5 K, because the box is small."
-
-
 def test_a_run_without_headlines_says_why():
     assert "average" in report.headline_lines([], 80)[0]
 
 
 # Figures
-
-
-def test_plot_puts_the_figure_beside_the_run_and_prints_its_path(folder, finished):
-    shutil.copy(finished, "x.nc")
-    result = atmosbox_in_process("plot", "x.nc", "--format", "svg")
-    assert (result.exit_code, result.stdout) == (0, "x.svg\n"), result.output
-    assert Path("x.svg").read_bytes().startswith(b"<?xml")
-    again = atmosbox_in_process("plot", "x.nc", "--out", "x.svg", "--force", "--theme", "slides")
-    assert again.exit_code == 0
-
-
-def test_the_formats_and_themes_are_those_of_the_figures():
-    from atmosbox import plot
-
-    assert get_args(Format) == plot.FORMATS
-    assert tuple(f".{name}" for name in plot.FORMATS) == FIGURES
-    assert set(get_args(get_args(Theme)[0])) == set(plot.THEMES)
 
 
 # Checks
@@ -979,31 +697,3 @@ def test_check_of_a_tampered_file_ends_with_3(folder, finished):
     failed = [line.split()[1] for line in result.stdout.splitlines() if line.startswith("FAILED")]
     assert failed[0] == "balance"
     assert failed[-1] == "conventions"
-
-
-def test_check_says_how_to_get_the_checker_of_conventions(finished, monkeypatch):
-    monkeypatch.setattr(shutil, "which", lambda *args, **kwargs: None)
-    result = atmosbox_in_process("check", str(finished))
-    assert result.exit_code == 0
-    assert "pip install 'atmosbox[test]'" in result.stdout
-    assert json.loads(atmosbox_in_process("check", str(finished), "--json").stdout)["conventions"]["passed"] is None
-
-
-@posix
-def test_a_broken_checker_of_conventions_is_not_the_files_fault(tmp_path, monkeypatch):
-    broken = tmp_path / "checker"
-    broken.write_text("#!/bin/sh\necho 'no such thing' >&2\nexit 1\n", encoding="utf-8")
-    broken.chmod(0o755)
-    monkeypatch.setattr(shutil, "which", lambda *args, **kwargs: str(broken))
-    found = check.conventions(tmp_path / "x.nc")
-    assert found == (None, "compliance-checker does not work here: no such thing")
-
-
-def test_a_command_that_ends_itself_is_left_alone():
-    @terminal.guarded
-    def command():
-        raise typer.Exit(7)
-
-    with pytest.raises(typer.Exit) as ended:
-        command()
-    assert ended.value.exit_code == 7

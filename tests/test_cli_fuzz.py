@@ -108,13 +108,6 @@ def test_no_words_break_any_command(folder, words):
 
 
 @settings(max_examples=300)
-@given(name=st.sampled_from(scenarios.names()), setting=st.sampled_from(NAMES), value=values)
-def test_no_value_of_a_setting_breaks_the_command_line(folder, name, setting, value):
-    atmosbox_run(name, "--set", f"{setting}={value}")
-    assert list(folder.iterdir()) == []
-
-
-@settings(max_examples=300)
 @given(content=config_files, scene=st.sampled_from(["", *scenarios.names()]))
 def test_no_settings_file_breaks_the_command_line(folder, content, scene):
     config = Path("a.toml")

@@ -74,13 +74,6 @@ def test_a_settings_file_that_says_something_else_is_refused_with_its_line(tmp_p
         assert sentence.endswith(".")
 
 
-def test_a_file_that_cannot_be_read_is_refused_with_its_path(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for path, why in [("missing.toml", "No such file"), (".", "directory|denied"), ("a\0b", "not a path")]:
-        with pytest.raises(FileError, match=rf"cannot be read \(.*({why}).*\): give the path of a settings file\.$"):
-            load_config(path)
-
-
 toml = st.lists(
     st.sampled_from(
         ["scene", "settings", "[settings]", "[", "]", "\n", " = ", "=", ".", '"', "'", "'''", "a",

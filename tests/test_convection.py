@@ -139,13 +139,6 @@ def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_abo
         assert wind.value > 4.0 * wind.standard_error
 
 
-def test_the_cases_are_other_defaults_and_no_more():
-    settings = runner.prepare("convection", {"case": "sea-breeze", "molecules": 500}).settings
-    assert (settings.sides, settings.molecules, settings.gravity) == ("warm-and-cold", 500, 9.80665)
-    assert runner.prepare("convection", settings.as_dict()).settings == settings
-    assert str(runner.prepare("convection", {"case": "stable"}).engine) == "dsmc"
-
-
 @pytest.mark.parametrize(
     ("settings", "engine", "refused"),
     [

@@ -1,6 +1,5 @@
 """The dataset that is made from the numbers of a run."""
 
-import json
 from types import SimpleNamespace
 
 import numpy as np
@@ -41,23 +40,10 @@ def test_a_variable_that_is_not_declared_is_refused():
         dataset({"air_temprature": [1.0, 2.0, 3.0]}, TIMES, {})
 
 
-def test_a_measurement_names_its_companions():
-    names = ["air_temperature", "air_temperature_theory", "air_temperature_se", "air_temperature_count"]
-    run = dataset({name: [1.0, 2.0, 3.0] for name in names}, TIMES, {})
-    named = run.air_temperature.attrs["ancillary_variables"].split()
-    assert sorted(named) == sorted(names[1:])
-    assert all("ancillary_variables" not in run[name].attrs for name in named)
-
-
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_a_ledger_that_is_not_finite_stops_the_run(value):
     with pytest.raises(EngineError, match=r"kinetic_energy is not finite at \[1\]"):
         dataset({"kinetic_energy": [1.0, value, 2.0]}, TIMES, {})
-
-
-def test_a_count_that_is_not_finite_stops_the_run():
-    with pytest.raises(EngineError, match="collision_count"):
-        dataset({"collision_count": [1.0, np.nan, 2.0]}, TIMES, {})
 
 
 def test_a_measurement_of_nothing_is_nan_and_has_a_fill_value():
@@ -76,21 +62,6 @@ def test_coordinates_bounds_and_ledgers_have_no_fill_value():
     assert "elapsed_time_bnds" not in run.coords
 
 
-def test_time_is_a_float_in_the_unit_of_the_scene_and_no_date():
-    run = dataset({"air_temperature": [1.0, 2.0, 3.0]}, {"elapsed_time": [0.001, 0.002, 0.003]}, {}, time_unit="ps")
-    assert run.elapsed_time.dtype == float
-    assert run.elapsed_time.attrs["units"] == "ps"
-    assert "standard_name" not in run.elapsed_time.attrs
-    with pytest.raises(ValueError, match="minutes"):
-        dataset({}, TIMES, {}, time_unit="minutes")
-
-
-@pytest.mark.parametrize("times", [[1.0, 1.0, 2.0], [3.0, 2.0, 1.0]])
-def test_a_coordinate_must_rise(times):
-    with pytest.raises(ValueError, match="elapsed_time does not rise"):
-        dataset({"air_temperature": [1.0, 2.0, 3.0]}, {"elapsed_time": times}, {})
-
-
 def test_what_is_measured_on_the_way_can_be_drawn_along_the_pressure_and_the_height_of_the_parcel(tmp_path):
     frames = {
         "parcel_temperature": [288.0, 280.0, 270.0],
@@ -106,42 +77,6 @@ def test_what_is_measured_on_the_way_can_be_drawn_along_the_pressure_and_the_hei
         dataset({"parcel_pressure": [1e5, np.nan, 8e4]}, TIMES, {})
 
 
-def test_only_a_coordinate_can_be_given_as_one():
-    with pytest.raises(KeyError, match="no coordinate"):
-        dataset({}, {**TIMES, "air_temperature": [1.0, 2.0, 3.0]}, {})
-
-
-def test_a_dimension_without_a_coordinate_is_refused():
-    with pytest.raises(KeyError, match="height"):
-        dataset({"layer_pressure": [1.0, 2.0]}, {}, {})
-    with pytest.raises(KeyError, match="wall"):
-        dataset({"heat_from_wall": np.zeros((3, 2))}, TIMES, {})
-
-
-def test_an_array_of_another_shape_is_refused():
-    with pytest.raises(ValueError, match="heat_from_wall has the shape"):
-        dataset({"heat_from_wall": [1.0, 2.0, 3.0]}, TIMES, {})
-    with pytest.raises(ValueError, match="elapsed_time"):
-        dataset({"air_temperature": [1.0, 2.0]}, TIMES, {})
-
-
-def test_a_wall_is_found_by_its_name():
-    run = dataset({"heat_from_wall": np.arange(18.0).reshape(3, 6)}, TIMES, {})
-    assert run.heat_from_wall.sel(wall="z_high").values.tolist() == [5.0, 11.0, 17.0]
-
-
-def test_two_walls_can_be_named():
-    run = dataset({"heat_from_wall": np.zeros((3, 2))}, {**TIMES, "wall": ["z_low", "z_high"]}, {})
-    assert run.wall.values.tolist() == ["z_low", "z_high"]
-
-
-def test_species_are_flags_with_meanings():
-    run = dataset({"species": [0, 1, 0]}, {}, {})
-    assert run.species.dtype == np.int8
-    assert run.species.attrs["flag_values"].tolist() == [0, 1]
-    assert run.species.attrs["flag_meanings"] == "dry_air water"
-
-
 def test_a_headline_becomes_four_numbers_in_si():
     held = headline_variables(headline())
     assert {name: pytest.approx(float(number.values)) for name, number in held.items()} == {
@@ -154,43 +89,6 @@ def test_a_headline_becomes_four_numbers_in_si():
     assert held["lapse_rate"].attrs["display_units"] == "K km-1"
     assert held["lapse_rate"].attrs["comment"] == "a finite rise"
     assert held["lapse_rate"].attrs["units_metadata"] == "temperature: difference"
-
-
-def test_the_error_of_a_temperature_is_marked_as_a_difference():
-    held = headline_variables(
-        headline("final", 293.15, unit="K", display_unit="degC", standard_error=0.5, theory=294.15, tolerance=2.0)
-    )
-    assert [float(number.values) for number in held.values()] == [293.15, 0.5, 294.15, 2.0]
-    assert held["final"].attrs["units_metadata"] == "temperature: on_scale"
-    assert held["final_se"].attrs["units_metadata"] == "temperature: difference"
-
-
-def test_what_a_headline_does_not_state_is_not_in_the_file():
-    held = headline_variables(headline(value=None, theory=None, tolerance=None, standard_error=None, reason=None))
-    assert list(held) == ["lapse_rate"]
-    assert np.isnan(held["lapse_rate"].values)
-    assert "comment" not in held["lapse_rate"].attrs
-
-
-def test_the_headlines_are_listed_in_the_order_of_the_scene():
-    run = dataset({}, {}, {"title": "A box"}, [headline("second"), headline("first", standard_error=None)])
-    assert json.loads(run.attrs["atmosbox_headlines"]) == ["second", "first"]
-    assert run.second.attrs["ancillary_variables"] == "second_se second_theory second_tolerance"
-    assert run.attrs["title"] == "A box"
-
-
-def test_a_headline_may_not_hide_a_variable():
-    with pytest.raises(ValueError, match="air_temperature"):
-        dataset({"air_temperature": [1.0, 2.0, 3.0]}, TIMES, {}, [headline("air_temperature")])
-    with pytest.raises(ValueError, match="lapse_rate"):
-        dataset({}, {}, {}, [headline(), headline()])
-
-
-def test_the_arrays_of_the_caller_are_left_alone():
-    given = np.array([1.0, 2.0, 3.0])
-    run = dataset({"air_temperature": given}, TIMES, {})
-    run.air_temperature[0] = 99.0
-    assert given[0] == 1.0
 
 
 def test_a_temperature_of_two_molecules_seen_once_is_hardly_known():

@@ -1,35 +1,18 @@
 """The list of engines: which engines and options are accepted, and which are refused."""
 
-import inspect
 import json
 import warnings
 
 import pytest
-from typer.testing import CliRunner
 
 from atmosbox import scenarios
-from atmosbox.cli import app
-from atmosbox.engine import CoarseStepWarning, Parcel
+from atmosbox.engine import CoarseStepWarning
 from atmosbox.engine.core.energy_budget import GIVEN, STORES
 from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.scene.engines import ENGINES, EXACT, FEW, choose, used
+from atmosbox.scene.engines import FEW, choose, used
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.simulation.recording import Recording
-from tests.in_process import typed
-
-
-@pytest.mark.parametrize("name", ENGINES)
-def test_an_engine_is_what_it_says_and_knows_its_options(name):
-    engine = ENGINES[name]
-    parcel = engine.parcel()
-    assert issubclass(parcel, Parcel)
-    assert parcel.engine == name
-    known = {**inspect.signature(Parcel.__init__).parameters, **inspect.signature(parcel.__init__).parameters}
-    for option in engine.parameters:
-        assert option.name in known
-        if option.name != "cell":  # it replaces another option
-            assert known[option.name].default == option.default
 
 
 def test_a_choice_is_spelled_as_it_is_read_and_presets_by_their_names():
@@ -82,24 +65,6 @@ def test_a_file_knows_its_engine_also_one_of_an_earlier_version():
         used(made.assign_attrs(atmosbox_parameters=json.dumps({"engine": "exakt"})))
 
 
-def test_a_scene_without_engines_runs_on_the_exact_one_alone(tmp_path):
-    scene = tmp_path / "plain.py"
-    scene.write_text(
-        '"""A scene."""\n'
-        "from atmosbox.scene.settings import SceneSettings\n"
-        "class Settings(SceneSettings):\n    pass\n"
-        "def build(settings): ...\n"
-        "def theory(dataset, settings): ...\n"
-        "def headlines(dataset, settings): ...\n"
-        "panels = ()\n",
-        encoding="utf-8",
-    )
-    assert runner.prepare(scene, {}).engine is EXACT
-    for engine in ("stepped", "exact:collisions=off"):
-        with pytest.raises(SettingError, match="takes no engine"):
-            runner.prepare(scene, {}, engine=engine)
-
-
 def test_without_collisions_nobody_meets_and_theory_counts_no_room():
     made = runner.run("temperature", molecules=50, duration="1 ns", engine="exact:collisions=off")
     assert not made.collision_count.values.any()
@@ -116,32 +81,6 @@ def test_many_molecules_of_a_thin_gas_run_on_dsmc_and_few_on_the_exact_engine(sc
     assert {each.unusual_engine for each in (as_it_comes, many, few)} == {""}
     asked = runner.prepare(scene, {}, engine="exact")
     assert (str(asked.engine), asked.unusual_engine) == ("exact", "exact")
-
-
-def test_an_engine_that_cannot_do_a_scene_says_why(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(app, ["run", "lifting-moist", "--engine", "stepped"])
-    assert done.exit_code == 2
-    assert "cannot simulate liquid water" in done.output
-    assert "give --engine exact" in done.output
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    words = [
-        "run",
-        "elastic-collisions",
-        "--set",
-        "duration=1s",
-        "--engine",
-        "stepped:applet,delta=0.005",
-        "--out",
-        "a.nc",
-    ]
-    assert CliRunner().invoke(app, words).exit_code == 0
-    again = CliRunner().invoke(app, ["run", "--from", "a.nc", "--out", "b.nc", "--dry-run"])
-    assert "stepped:applet,delta=0.005" in again.output
 
 
 MOVES, SPINS, FALLS, LIQUID = STORES
@@ -229,15 +168,6 @@ def test_a_term_that_is_left_out_of_the_budget_is_found():
     failed = [check for check in runner.verify(made) if not check.passed]
     assert [check.name for check in failed] == ["balance"]
     assert "is not constant" in failed[0].sentence
-
-
-def test_the_default_thermostat_of_attraction_passes_the_check(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    words = ["--set", "molecules=60", "--set", "duration=0.02ns"]
-    assert typed("run", "attraction", *words).exit_code == 0
-    checked = typed("check", "attraction.nc")
-    assert checked.exit_code == 0, checked.output
-    assert "FAILED" not in checked.output
 
 
 def test_a_file_of_an_engine_names_its_source_and_the_energy_of_its_scheme():

@@ -6,7 +6,7 @@ that errors are too large. Where the model states a known error, the mean may be
 99.9 % range; as a run reads its error from 20 blocks or more, which know its square by 40 % at worst, the range is that
 of an F distribution of n and 12 n degrees.
 
-The cheap tier does so in small boxes, in a few seconds each. With ``--validate`` each scene runs 60 times as it comes:
+The cheap tier does so in small boxes, in a few seconds each. With ``--nightly`` each scene runs 60 times as it comes:
 of one processor one or two minutes for temperature, discs, atmosphere, evaporation and lifting-dry, and five or six for
 condensation and each moist ascent, half an hour in all. No headline is left out: one that
 states no error must be among those known to have none, and every headline that a scene names must be seen in a case.
@@ -164,7 +164,7 @@ def test_a_dense_column_has_the_pressure_n_k_t_z_and_its_errors_are_its_scatter(
 class Case(NamedTuple):
     """A scene with settings, the number of its runs, and the headlines that do not depend on chance.
 
-    ``long`` cases are left to the validate tier: those that take minutes, and second cases of a scene.
+    ``long`` cases are left to the nightly tier: those that take minutes, and second cases of a scene.
     """
 
     scene: str
@@ -249,7 +249,7 @@ def test_every_scene_has_a_case():
 
 @pytest.mark.parametrize(
     "case",
-    [pytest.param(case, id=named(case), marks=pytest.mark.validate if case.long else ()) for case in CASES],
+    [pytest.param(case, id=named(case), marks=pytest.mark.nightly if case.long else ()) for case in CASES],
 )
 def test_the_errors_of_a_small_box_are_its_scatter(case, seen, request):
     if not case.long:
@@ -276,14 +276,14 @@ def test_the_errors_of_a_rising_cloud_are_its_scatter():
 @pytest.mark.parametrize("scene", scenarios.names())
 @pytest.mark.usefixtures("fewer_frames")
 def test_every_headline_that_a_scene_names_is_seen_in_a_case(scene, seen):
-    if not spelled(scene) <= seen.get(scene, set()):  # this test alone, or a case of the validate tier
+    if not spelled(scene) <= seen.get(scene, set()):  # this test alone, or a case of the nightly tier
         cases = [case.settings | QUICK.get((scene, case.long), {}) for case in CASES if case.scene == scene]
         own = [each for settings in cases for each in runs(scene, 1, **settings)]
         seen[scene] = names_of(own)
     assert spelled(scene) <= seen.get(scene, set())
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 @pytest.mark.parametrize("scene", scenarios.names())
 def test_the_errors_of_sixty_runs_of_a_scene_as_it_comes_are_their_scatter(scene):
     if scene == "attraction":

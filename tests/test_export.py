@@ -45,14 +45,6 @@ def with_ase(content):
     return ase.io.read(io.StringIO(content.decode()), index=":", format="extxyz")
 
 
-def test_velocities_are_saved_and_carry_the_kinetic_energy(box):
-    motion = box.molecule_velocity.astype(float)
-    energy = 0.5 * (box.molecule_mass * (motion**2).sum("axis")).sum("molecule")
-    np.testing.assert_allclose(energy, box.kinetic_energy, rtol=1e-5)
-    np.testing.assert_allclose(box.molecule_speed, np.sqrt((motion**2).sum("axis")), rtol=1e-6)
-    assert abs(float(motion.mean())) < 0.1 * float(box.molecule_speed.mean())
-
-
 def test_a_box_of_nanometres_is_read_by_ase_in_angstroms(box):
     frames = with_ase(extended_xyz(box))
     assert len(frames) == box.sizes["elapsed_time"]

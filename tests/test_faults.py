@@ -86,7 +86,7 @@ TURKISH = "tr_TR.UTF-8"
         (["-W", "error"], {"LC_ALL": TURKISH, "LANG": TURKISH, "TERM": None, "TZ": "Pacific/Kiritimati"}),
         ([], {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NOBODY),
         # it translates all libraries anew; test_house looks at what is left out
-        pytest.param(["-O"], {}, marks=pytest.mark.validate),
+        pytest.param(["-O"], {}, marks=pytest.mark.nightly),
     ],
     ids=["-W error, Turkish, far zone", "C, no home", "-O"],
 )
@@ -130,15 +130,6 @@ for words in json.loads(sys.argv[2]):
         assert len({line.count(",") for line in text.splitlines() if '"' not in line}) == 1
 
 
-def test_a_checkout_that_was_moved_runs_and_finds_the_same(usual, tmp_path):
-    """What is cached beside the sources, and for them, was made where they stood before."""
-    for name in ("atmosbox", "scenarios"):
-        shutil.copytree(ROOT / name, tmp_path / "there" / name)
-    shutil.copy(ROOT / "pyproject.toml", tmp_path / "there")
-    assert command(SHORT, tmp_path / "run", package=tmp_path / "there")[0] == 0
-    assert same(tmp_path / "run", usual)
-
-
 # Clocks
 
 
@@ -164,49 +155,7 @@ def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, m
     assert {name for name in whole if kept[name] != whole[name]} == {"history"}
 
 
-@pytest.mark.skipif(shutil.which("faketime") is None, reason="needs the program faketime")
-@pytest.mark.parametrize("jump", ["-3y", "+3y"])
-def test_a_computer_with_a_wrong_clock_goes_on_with_a_run(usual, tmp_path, monkeypatch, jump):
-    """A run that was begun in another year continues, and its file is the same."""
-    prepared = runner.prepare(SCENE, {"duration": 2.0}, save_molecules=None)
-
-    def half(share, word):
-        if word == "running" and share > 0.5:
-            raise KeyboardInterrupt
-
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
-    typed = " ".join(["atmosbox", *SHORT])
-    with pytest.raises(runner.Interrupted):
-        runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "x.nc"), progress=half, command=typed)
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    words = ["faketime", "-f", jump, sys.executable, "-m", "atmosbox", "run", "--resume", "x.part.nc"]
-    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
-    assert same(tmp_path, usual)
-
-
 # Signals
-
-
-@pytest.mark.parametrize(
-    ("number", "status"), [(signal.SIGTERM, 143), pytest.param(signal.SIGHUP, 129, marks=pytest.mark.validate)]
-)
-def test_a_signal_to_a_sweep_keeps_what_is_complete_and_says_so_by_its_status(tmp_path, number, status):
-    words = ["sweep", SCENE, "--vary", "molecules=10,2000", "--set", "duration=300s", "--jobs", "2", "--out", "x.nc"]
-    with started(words, tmp_path) as process:
-        deadline = time.monotonic() + 120.0
-        first = tmp_path / "x" / "1-1.nc"
-        while process.poll() is None and time.monotonic() < deadline:
-            if first.exists():
-                break
-            time.sleep(0.02)
-        process.send_signal(number)
-        _, said = process.communicate()
-    assert process.returncode == status, said
-    assert "1 of 2 runs are saved in x, type the same again" in said
-    assert read(first).attrs["atmosbox_status"] == "complete"
 
 
 def dropped_by_c(number):
@@ -231,25 +180,6 @@ def test_a_signal_is_not_lost_where_its_exception_is_dropped(number, status, com
     assert end.value.exit_code == status
     assert time.monotonic() - began < 10.0
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-
-
-def test_ctrl_c_while_the_program_is_loaded_gives_no_traceback(tmp_path):
-    code = """
-import signal, sys
-
-class Finder:
-    def find_spec(name, *_):
-        if name == "typer":
-            signal.raise_signal(signal.SIGINT)
-
-sys.meta_path.insert(0, Finder)
-import atmosbox.cli
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False,
-        preexec_fn=listen,
-    )  # fmt: skip
-    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
 
 
 # Disks
@@ -302,15 +232,6 @@ def test_a_folder_that_nothing_may_be_written_to_is_refused_and_a_cache_there_is
         assert same(tmp_path / "run", usual)
 
 
-@root
-@pytest.mark.soak
-def test_a_cache_on_a_full_disk_costs_time_and_nothing_else(usual, tmp_path):
-    with disk(tmp_path / "disk", "size=64k") as place:
-        status, _, said = command(SHORT, tmp_path / "run", NUMBA_CACHE_DIR=str(place))
-        assert status == 0, said
-        assert same(tmp_path / "run", usual)
-
-
 # Caches
 
 
@@ -342,16 +263,3 @@ def test_runs_that_fill_one_empty_cache_at_once_find_the_same(usual, tmp_path):
         assert process.returncode == 0, said
         assert same(folder, usual)
     assert not list(home.rglob("*.tmp*"))
-
-
-@pytest.mark.soak
-def test_processes_killed_while_they_fill_a_cache_leave_one_that_serves(usual, tmp_path):
-    home, draw = tmp_path / "cache", random.Random(9)
-    for k in range(6):
-        with started(SHORT, tmp_path / f"{k}", NUMBA_CACHE_DIR=str(home)) as process:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(draw.uniform(0.5, 12.0))
-            process.kill()
-    status, _, said = command(SHORT, tmp_path / "last", NUMBA_CACHE_DIR=str(home))
-    assert status == 0, said
-    assert same(tmp_path / "last", usual)

@@ -1,9 +1,6 @@
 """The functions that scripts and notebooks call: `atmosbox.run` and the others."""
 
-import ast
 import importlib.util
-import pickle
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +11,7 @@ import xarray as xr
 
 import atmosbox as ab
 from atmosbox import errors
-from atmosbox.interface import inline_page, notebook
+from atmosbox.interface import inline_page
 from tests.few_frames import cut
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -55,14 +52,6 @@ def test_a_run_begins_with_its_numbers_and_is_a_dataset_in_all_else(lifted):
     assert shown.index("temperature at 700 hPa") < shown.index("xarray.Dataset") < shown.index("parcel_temperature")
 
 
-def test_what_is_made_of_a_run_prints_as_well(lifted):
-    assert repr(lifted.isel(elapsed_time=-1)).startswith("lifting-dry: ")
-    assert repr(pickle.loads(pickle.dumps(lifted))) == repr(lifted)
-    for less in (lifted[["air_temperature"]], lifted.drop_attrs(), lifted.drop_vars("temperature_at_300_hpa")):
-        assert repr(less).startswith("<xarray.Dataset>")
-        assert not less._repr_html_().startswith("<div><strong>")
-
-
 def test_a_saved_run_is_opened_as_it_was_and_replaced_only_by_force(tmp_path):
     path = tmp_path / "run.nc"
     made = ab.run(SCENE, duration="2 s", out=path)
@@ -101,25 +90,6 @@ def test_a_sweep_takes_lists_and_words(tmp_path):
     assert starts.start.values.tolist() == ["equal", "maxwell"]
 
 
-def test_a_room_of_the_same_name_as_a_function_is_both(lifted):
-    import atmosbox.plot
-    from atmosbox import plot, sweep
-
-    assert atmosbox.plot is plot is ab.plot
-    assert plot(lifted).axes
-    assert plot.FORMATS
-    assert sweep is ab.sweep
-    assert sweep.plan
-
-
-def test_the_scenes_and_their_settings_print_as_tables():
-    assert "lifting-dry" in ab.scenes()
-    assert "A parcel of dry air rises and cools." in repr(ab.scenes())
-    settings = ab.scenes("lifting-dry")
-    assert settings[0] == "molecules"
-    assert "number of molecules in the parcel" in settings._repr_html_()
-
-
 # Pages and bars
 
 
@@ -145,45 +115,6 @@ def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
     assert "Temperature" in frame.locator("h1").inner_text()
     tab.close()
     assert faults == []
-
-
-def test_a_notebook_shows_a_bar_that_goes_when_the_run_has_ended(monkeypatch):
-    shown = []
-
-    class Shell:
-        kernel = True
-
-    class Handle:
-        def update(self, content):
-            shown.append(content.data)
-
-    class Content:
-        def __init__(self, data):
-            self.data = data
-
-    display = type(sys)("IPython.display")
-    display.HTML = Content
-    display.display = lambda content, display_id: (shown.append(content.data), Handle())[1]
-    ipython = type(sys)("IPython")
-    ipython.get_ipython = Shell
-    monkeypatch.setitem(sys.modules, "IPython", ipython)
-    monkeypatch.setitem(sys.modules, "IPython.display", display)
-    assert notebook.in_notebook()
-    ab.run(SCENE, duration="20 s")
-    shares = [float(text.partition('value="')[2].partition('"')[0]) for text in shown[:-1]]
-    assert shares[0] == 0.0
-    assert shares[-1] == 1.0
-    assert shares == sorted(shares)
-    assert shown[-1] == ""
-    shown.clear()
-    ab.run(SCENE, duration="2 s", progress=False)
-    assert shown == []
-
-
-def test_a_function_of_ones_own_hears_how_far_a_run_is():
-    told = []
-    ab.run(SCENE, duration="2 s", progress=lambda share, word: told.append((share, word)))
-    assert told[-1] == (1.0, "done")
 
 
 # Refusals
@@ -215,21 +146,6 @@ def test_a_run_without_molecules_says_how_to_keep_them():
         ab.show(ab.run("lifting-dry", molecules=50, save_molecules=False))
 
 
-def test_no_text_below_the_command_line_names_an_option():
-    """A command is named where it is what to type: in a worksheet, a page, a figure, a file, for dask and for pip."""
-    commands = {"errors", "lab_plan", "restart", "sheet_run", "tradeoff_figure", "workers"}
-    for path in [*ROOT.glob("atmosbox/**/*.py"), *ROOT.glob("scenarios/*.py")]:
-        if path.stem in commands or {"cli", "engine"} & set(path.relative_to(ROOT).parts[:2]):
-            continue
-        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
-        documentation = {node.value for node in nodes if isinstance(node, ast.Expr)}
-        for node in nodes:
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in documentation:
-                assert not re.search(r"(^| )--[a-z]", node.value.replace("pip install --upgrade", "")), (
-                    f"{path.name}:{node.lineno}"
-                )
-
-
 # The stub for editors
 
 
@@ -244,14 +160,6 @@ def test_what_an_editor_knows_is_what_the_scenes_say():
     assert (ROOT / "atmosbox" / "__init__.pyi").read_text(encoding="utf-8") == made.stub(), (
         "the settings of a scene have changed: run python tools/stub.py"
     )
-
-
-def test_an_editor_completes_the_settings_of_a_scene():
-    jedi = pytest.importorskip("jedi")
-    project = jedi.Project(ROOT, added_sys_path=[str(ROOT)])
-    for typed, wanted in (('ab.run("lifting-dry", top', "top_pressure="), ("ab.comp", "compare")):
-        script = jedi.Script(f"import atmosbox as ab\n{typed}", path=ROOT / "typed.py", project=project)
-        assert wanted in [each.name for each in script.complete()]
 
 
 def test_importing_atmosbox_takes_no_time():

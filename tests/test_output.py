@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import netCDF4
 import numpy as np
@@ -21,7 +20,7 @@ from atmosbox.errors import DiskFullError, FileError
 from atmosbox.file import netcdf as output
 from atmosbox.file import output_path, provenance, validity
 from atmosbox.file.dataset import VARIABLES, dataset
-from atmosbox.file.output_path import check_writable, clear, part_path, whole_file
+from atmosbox.file.output_path import check_writable, clear, whole_file
 from atmosbox.scene.headline import Headline
 
 CHECKER = """
@@ -53,18 +52,6 @@ for path in sys.argv[1:]:
         passed, failed = ComplianceChecker.run_checker(path, ["cf:1.11"], 0, "strict", output_filename="-")
     said[path] = found.getvalue() if failed or not passed else ""
 print(json.dumps(said))
-"""
-
-CHILD = """
-import os, sys, time
-import numpy as np
-from atmosbox.file.dataset import dataset
-from atmosbox.file.provenance import global_attributes
-
-def run_so_far(frames):
-    times = np.arange(1.0, frames + 1)
-    attrs = global_attributes({"scene": "temperature"}, title="A box", command="a test", status="partial")
-    return dataset({"air_temperature": 300.0 + times}, {"elapsed_time": times}, attrs)
 """
 
 
@@ -137,22 +124,11 @@ def everything():
 RUNS = [lifting, everything]
 
 
-def child(code, *arguments, **options):
-    """Start a Python that runs this code after the definitions of CHILD."""
-    command = [sys.executable, "-W", "error", "-c", CHILD + code, *map(str, arguments)]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, **options)
-
-
 def failing(number):
     def fail(*_arguments, **_options):
         raise OSError(number, os.strerror(number))
 
     return fail
-
-
-def interrupted(*_arguments, **_options):
-    raise KeyboardInterrupt
 
 
 # The content of a file
@@ -187,14 +163,6 @@ def test_a_file_passes_the_strict_check_of_cf_also_read_changed_and_written_agai
     assert {name: found for name, found in faults.items() if found and name != "wrong"} == {}
 
 
-def test_the_strict_check_finds_a_unit_that_is_wrong(faults):
-    assert "air_pressure" in faults["wrong"]
-
-
-def test_every_declared_variable_is_in_a_file_that_is_checked():
-    assert set(everything().variables) >= set(VARIABLES)
-
-
 @pytest.mark.parametrize("make", RUNS)
 def test_a_file_is_read_as_it_was_written(tmp_path, make):
     run = make()
@@ -205,67 +173,7 @@ def test_a_file_is_read_as_it_was_written(tmp_path, make):
         assert opened.elapsed_time.dtype == float
 
 
-@pytest.mark.parametrize("make", [lifting, everything])
-def test_other_programs_can_append_to_a_file(tmp_path, make):
-    run = make()
-    path = output.write(run, tmp_path / "run.nc")
-    with netCDF4.Dataset(path, "r+") as file:
-        file.setncattr("institution", "A school")
-        file.renameVariable("air_pressure", "another_pressure")
-    found = output.read(path)
-    assert found.attrs["institution"] == "A school"
-    assert found.rename(another_pressure="air_pressure").assign_attrs(run.attrs).identical(run)
-
-
-def test_writing_leaves_the_dataset_alone(tmp_path):
-    run = everything()
-    untouched = run.copy(deep=True)  # if it were made again, it would have another date
-    output.write(run, tmp_path / "run.nc")
-    assert run.identical(untouched)
-    for name, entry in untouched.variables.items():
-        assert repr(run[name].encoding) == repr(entry.encoding)
-
-
-def test_the_paths_of_molecules_are_packed(tmp_path):
-    with netCDF4.Dataset(output.write(everything(), tmp_path / "run.nc")) as file:
-        path = file["molecule_position"]
-        assert path.dtype == np.float32
-        assert path.chunking() == [100, 40, 3]
-        assert path.filters()["zlib"]
-        assert path.filters()["shuffle"]
-        assert path.filters()["complevel"] == 4
-
-
-def test_a_run_without_frames_can_be_written(tmp_path):
-    empty = dataset({"air_temperature": []}, {"elapsed_time": []}, attributes())
-    assert output.read(output.write(empty, tmp_path / "run.nc")).sizes["elapsed_time"] == 0
-
-
-def test_the_same_run_with_a_set_date_has_the_same_content(tmp_path, monkeypatch):
-    # not the same bytes: HDF5 itself notes the second in which a variable was created
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    first, second = (output.read(output.write(everything(), tmp_path / name)) for name in ("one.nc", "two.nc"))
-    assert first.identical(second)
-    assert first.attrs["history"] == second.attrs["history"]
-
-
-def test_a_dataset_that_could_not_be_read_again_is_not_written(tmp_path):
-    with pytest.raises(KeyError, match="atmosbox_parameters"):
-        output.write(xr.Dataset(), tmp_path / "run.nc")
-    assert not list(tmp_path.iterdir())
-
-
 # Paths that may be written
-
-
-def test_a_file_is_replaced_only_by_force(tmp_path):
-    path = output.write(lifting(), tmp_path / "run.nc")
-    before = path.read_bytes()
-    with pytest.raises(FileError, match=r"exists already.*force=True.*out"):
-        output.write(everything(), path)
-    assert path.read_bytes() == before
-    output.write(everything(), path, force=True)
-    assert "height" in output.read(path).dims
 
 
 def test_no_function_that_saves_replaces_a_file_unasked(tmp_path):
@@ -309,29 +217,6 @@ def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, forc
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
-def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(os, "access", lambda *_: False)
-    with pytest.raises(FileError, match="Nothing may be written"):
-        check_writable(tmp_path / "run.nc")
-
-
-def test_a_disk_without_room_is_noticed_before_the_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(output_path.shutil, "disk_usage", lambda _: SimpleNamespace(free=4096))
-    with pytest.raises(DiskFullError, match="no room"):
-        check_writable(tmp_path / "run.nc")
-
-
-def test_the_check_before_a_run_writes_nothing(tmp_path):
-    assert check_writable(tmp_path / "run.nc") == tmp_path / "run.nc"
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_name_without_a_folder_is_a_file_here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert output.write(lifting(), "run.nc") == Path("run.nc")
-    assert output.read("run.nc").title == "Lifted air"
-
-
 def test_a_symbolic_link_keeps_pointing_to_the_file(tmp_path):
     (tmp_path / "disk").mkdir()
     (tmp_path / "run.nc").symlink_to(tmp_path / "disk" / "real.nc")
@@ -352,48 +237,6 @@ def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch,
         assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
     monkeypatch.undo()
     assert path.read_bytes() == before
-
-
-def test_another_failure_of_the_disk_is_told_in_a_sentence(tmp_path, monkeypatch):
-    monkeypatch.setattr(os, "fsync", failing(errno.EIO))
-    with pytest.raises(FileError, match="could not be written") as refusal:
-        output.write(lifting(), tmp_path / "run.nc")
-    assert not isinstance(refusal.value, DiskFullError)
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    ("hindered", "words"),
-    [("", "The disk has no room for"), ("Path.write_bytes = lambda *_: None", "could not be written")],
-    ids=["before HDF5 writes", "while HDF5 writes"],
-)
-def test_a_file_that_outgrows_what_the_system_grants_is_a_full_disk(tmp_path, hindered, words):
-    code = f"""
-from pathlib import Path
-{hindered}
-from atmosbox.errors import FileError
-from atmosbox.file.netcdf import write
-import resource
-resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))
-try:
-    write(run_so_far(5), sys.argv[1])
-except FileError as error:
-    sys.stdout.write(str(error))
-"""
-    with child(code, tmp_path / "run.nc") as process:
-        said, _ = process.communicate(timeout=60)
-    assert process.returncode == 0
-    assert words in said
-    assert said.count(".") == said.count("run.nc") + 1
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (Path, "write_bytes")])
-def test_an_interrupt_leaves_no_half_of_a_file(tmp_path, monkeypatch, place):
-    monkeypatch.setattr(*place, interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        output.write(lifting(), tmp_path / "run.nc")
-    assert not list(tmp_path.iterdir())
 
 
 def test_whatever_a_file_is_made_of_it_is_there_whole_or_not_at_all(tmp_path):
@@ -431,11 +274,6 @@ def test_nothing_in_the_package_puts_a_file_in_its_place_on_its_own():
     caches = {"engine/core/kernel_cache.py", "simulation/compilation.py", "simulation/expected_time.py"}
     netcdf = "file/netcdf.py"  # it takes the room on the disk for the temporary file of output_path
     assert ways - caches == {"file/output_path.py", "file/checkpoint.py", netcdf}
-
-
-def test_the_part_has_the_name_of_the_file():
-    for name, part in [("a.b.nc", "a.b.part.nc"), ("run", "run.part"), ("d/x.nc", "d/x.part.nc")]:
-        assert str(part_path(name)) == part.replace("/", os.sep)
 
 
 # Files that may be read
@@ -548,12 +386,6 @@ def test_a_file_that_is_not_a_run_is_refused_in_one_sentence(tmp_path, make, wor
     assert "\n" not in str(refusal.value)
 
 
-def test_a_name_that_no_file_has_is_refused():
-    for name in ["x" * 2000, "", ".", "no/folder/run.nc", "http://127.0.0.1:1/run.nc"]:
-        with pytest.raises(FileError, match=r"does not exist|is a folder"):
-            output.read(name)
-
-
 def test_a_run_that_does_not_fit_into_memory_is_refused_before_it_is_loaded(tmp_path, monkeypatch):
     path = output.write(lifting(), tmp_path / "run.nc")
     monkeypatch.setattr(validity, "SMALL", 0)
@@ -604,18 +436,3 @@ def stopped(path, number):
         process.stdout.readline()
         process.send_signal(number)
     assert process.returncode != 0
-
-
-def test_a_file_that_may_not_be_read_is_refused(tmp_path, monkeypatch):
-    path = output.write(lifting(), tmp_path / "run.nc")
-    monkeypatch.setattr(os, "access", lambda *_: False)
-    with pytest.raises(FileError, match="may not be read"):
-        output.read(path)
-
-
-def test_a_file_that_was_read_is_closed_and_can_be_replaced(tmp_path):
-    path = output.write(lifting(), tmp_path / "run.nc")
-    found = output.read(path)
-    output.write(everything(), path, force=True)
-    assert found.identical(output.read(path)) is False
-    assert not [name for name in os.listdir("/proc/self/fd") if os.path.realpath(f"/proc/self/fd/{name}") == str(path)]

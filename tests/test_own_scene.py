@@ -4,9 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from atmosbox.errors import FileError
 from atmosbox.file.netcdf import read
-from atmosbox.scenarios import load
 from atmosbox.simulation import runner
 from tests.in_process import typed
 
@@ -72,10 +70,3 @@ def test_a_scene_that_fails_is_told_its_line_and_the_reason(name, tmp_path, monk
     (sentence,) = result.stderr.splitlines()
     assert said.replace("LINE", f"my_scene.py, line {scene.partition(new)[0].count(chr(10)) + 1}") in sentence
     assert "bug" not in sentence
-
-
-def test_a_variable_that_is_not_declared_in_full_is_refused(tmp_path):
-    path = tmp_path / "my_scene.py"
-    path.write_text(f"{FLASK}\nvariables = {{'light_height': 'm'}}\n", encoding="utf-8")
-    with pytest.raises(FileError, match="give dimensions, unit and words"):
-        load(path)

@@ -74,18 +74,3 @@ GIVEN = {"docs/netcdf.md": lifted, "docs/sweep.md": swept, "docs/own-scene.md": 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_every_python_line_of_a_page_runs(page, few):
     execute(page, GIVEN.get(page.relative_to(ROOT).as_posix(), dict)())
-
-
-def test_the_pages_with_python_are_found():
-    assert {"README.md", "index.md", "netcdf.md", "own-scene.md"} <= {page.name for page in PAGES}
-
-
-def test_a_broken_line_of_a_page_is_found_with_its_number(tmp_path):
-    page = tmp_path / "page.md"
-    page.write_text(
-        "Text.\n\n```python\nx = 1\n```\n\nMore.\n\n```python\ny = x\nz = x.nothing\n```\n", encoding="utf-8"
-    )
-    with pytest.raises(AttributeError, match="nothing") as caught:
-        execute(page, {})
-    assert caught.traceback[-1].lineno + 1 == 11
-    assert str(caught.traceback[-1].path) == str(page)

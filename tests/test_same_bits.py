@@ -66,7 +66,7 @@ def other_library(tmp_path_factory):
     "names",
     [
         ("atmosphere-plane", "lifting-moist", "attraction", "stepped", "dsmc-moist"),
-        pytest.param(tuple(state_digest.CASES), marks=pytest.mark.validate),
+        pytest.param(tuple(state_digest.CASES), marks=pytest.mark.nightly),
     ],
     ids=["a case of each engine", "all"],
 )
@@ -74,7 +74,7 @@ def test_python_itself_ends_there_too_with_numpys_plainest_loops_and_another_c_l
     assert digests(*names, NUMBA_DISABLE_JIT="1", **PLAIN_NUMPY, **other_library) == known(*names)
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 @pytest.mark.parametrize("processor", ["generic", "haswell"])
 def test_older_processors_would_end_in_the_same_states(processor, tmp_path):
@@ -90,13 +90,3 @@ def test_no_kernel_calls_a_function_of_the_c_library_that_rounds_its_own_way(tmp
     assert len(machine_code) >= 8
     called = {file.name: set(LIBRARY.findall(file.read_bytes())) for file in machine_code}
     assert not {name: found for name, found in called.items() if found}
-
-
-@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
-def test_a_call_of_the_c_library_would_be_seen(tmp_path):
-    source = "import math, numba\nlog = numba.njit(cache=True)(lambda x: math.log(x) + math.lgamma(x))\nlog(2.0)\n"
-    (tmp_path / "calls.py").write_text(source)
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
-    subprocess.run([sys.executable, str(tmp_path / "calls.py")], env=environment, check=True)
-    code = b"".join(file.read_bytes() for file in (tmp_path / "kept").rglob("*.nbc"))
-    assert len(set(LIBRARY.findall(code))) == 2

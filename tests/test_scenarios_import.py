@@ -7,7 +7,6 @@ installer would put them, in environments that borrow the libraries of this one.
 import os
 import subprocess
 import sys
-import tarfile
 import venv
 import zipfile
 from pathlib import Path
@@ -82,11 +81,6 @@ def wheel(tmp_path_factory):
     return build(ROOT, tmp_path_factory.mktemp("wheel") / "dist", "wheel")
 
 
-@pytest.fixture(scope="module")
-def sdist(tmp_path_factory):
-    return build(ROOT, tmp_path_factory.mktemp("sdist") / "dist", "sdist")
-
-
 @pytest.fixture
 def classroom(tmp_path):
     """Return a user's folder with the user's own folder ``scenarios`` and file ``lifting_dry.py``."""
@@ -101,50 +95,6 @@ def classroom(tmp_path):
 def test_an_installed_wheel_finds_its_scenarios(tmp_path, classroom, wheel):
     places = look(new_environment(tmp_path / "env", wheel), classroom)
     assert all(place.is_relative_to(tmp_path / "env") for place in places)
-
-
-def test_a_wheel_built_from_the_sdist_finds_its_scenarios(tmp_path, classroom, sdist):
-    with tarfile.open(sdist) as archive:
-        archive.extractall(tmp_path / "source", filter="data")
-    (tree,) = (tmp_path / "source").iterdir()
-    wheel = build(tree, tmp_path / "dist", "wheel")
-    places = look(new_environment(tmp_path / "env", wheel), classroom)
-    assert all(place.is_relative_to(tmp_path / "env") for place in places)
-
-
-def test_an_editable_install_finds_the_scenarios_of_the_checkout(tmp_path, classroom):
-    wheel = build(ROOT, tmp_path / "dist", "editable")
-    places = look(new_environment(tmp_path / "env", wheel), classroom)
-    assert places == [ROOT / "atmosbox/__init__.py", ROOT / "scenarios/lifting_dry.py"]
-
-
-def test_an_uninstalled_checkout_finds_its_scenarios(tmp_path, classroom):
-    python = new_environment(tmp_path / "env")
-    expected = [ROOT / "atmosbox/__init__.py", ROOT / "scenarios/lifting_dry.py"]
-    assert look(python, ROOT) == expected
-    assert look(python, classroom, PYTHONPATH=str(ROOT)) == expected
-
-
-def test_the_wheel_holds_the_package_the_scenarios_and_nothing_else(wheel):
-    with zipfile.ZipFile(wheel) as archive:
-        found = archive.namelist()
-    assert len(found) == len(set(found))
-    assert {name.split("/")[0] for name in found if ".dist-info/" not in name} == {"atmosbox"}
-    own = {path.name for ending in ("py", "sheet.toml", "live.toml") for path in ROOT.glob(f"scenarios/*.{ending}")}
-    assert {Path(name).name for name in found if name.startswith("atmosbox/scenarios/")} == {
-        "__init__.py",
-        *own,
-    }
-    assert "atmosbox/py.typed" in found
-
-
-def test_the_sdist_holds_all_that_a_reader_or_a_packager_needs(sdist):
-    with tarfile.open(sdist) as archive:
-        found = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
-    assert {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "CITATION.cff", ".ci/run"} <= found
-    for folder in ("atmosbox", "scenarios", "tests", "docs", "benchmarks"):
-        modules = {path.relative_to(ROOT).as_posix() for path in (ROOT / folder).glob("**/*.py")}
-        assert modules <= found
 
 
 def test_a_wheel_does_not_look_into_the_project_of_somebody_else(tmp_path, wheel):
@@ -174,58 +124,10 @@ def test_the_scenes_are_in_the_order_of_teaching_each_with_its_level_and_minutes
     assert all(5 <= each.minutes <= 50 for each in found.values())
 
 
-def test_every_scenario_defines_what_a_scenario_must():
-    for module in map(scenarios.load, scenarios.names()):
-        assert [attribute for attribute in scenarios.REQUIRED if not hasattr(module, attribute)] == [], module
-        assert module.__doc__
-
-
-def test_a_scenario_may_be_named_with_underscores():
-    assert scenarios.load("lifting_dry") is scenarios.load("lifting-dry")
-
-
 def test_an_unknown_scenario_offers_the_nearest_ones():
     for name in ("lifting-dri", "Lifting-Dry", "lifting"):
         with pytest.raises(UnknownSceneError, match=f"{name}.*lifting-dry.*atmosbox.scenes"):
             scenarios.load(name)
-
-
-def test_a_hopeless_name_is_pointed_to_the_list():
-    for name in ("", "zzzz", "os", "__init__", "-", "a\0b", "x" * 10_000, "two\nlines"):
-        with pytest.raises(UnknownSceneError, match=r"atmosbox\.scenes") as caught:
-            scenarios.load(name)
-        assert len(str(caught.value).splitlines()) == 1
-        assert len(str(caught.value)) < 200
-
-
-def test_the_bare_name_of_an_own_file_is_answered_with_its_path(tmp_path, monkeypatch):
-    (tmp_path / "my_scene.py").write_text(OWN_SCENE, encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(UnknownSceneError, match=r"\./my_scene\.py"):
-        scenarios.load("my_scene")
-
-
-@pytest.mark.parametrize("spell", [str, Path])
-def test_an_own_file_is_loaded_by_its_path(tmp_path, spell):
-    path = tmp_path / "my_scene.py"
-    path.write_text(OWN_SCENE, encoding="utf-8")
-    module = scenarios.load(spell(path))
-    assert module.Settings().molecules == 100
-    assert module.__file__ == str(path)
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_an_own_file_in_the_current_folder_is_loaded_by_its_file_name(tmp_path, monkeypatch):
-    (tmp_path / "my_scene.py").write_text(OWN_SCENE, encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    assert scenarios.load("my_scene.py").Settings().molecules == 100
-
-
-def test_an_own_file_may_have_the_name_of_a_library_without_replacing_it(tmp_path):
-    path = tmp_path / "json.py"
-    path.write_text(OWN_SCENE, encoding="utf-8")
-    scenarios.load(path)
-    assert hasattr(sys.modules.get("json", __import__("json")), "loads")
 
 
 def test_an_edited_own_file_is_read_anew(tmp_path):
@@ -233,16 +135,6 @@ def test_an_edited_own_file_is_read_anew(tmp_path):
     for molecules in (100, 200, 300):
         path.write_text(OWN_SCENE.replace("100", str(molecules)), encoding="utf-8")
         assert scenarios.load(path).Settings().molecules == molecules
-
-
-def test_a_missing_own_file_is_refused(tmp_path):
-    with pytest.raises(FileError, match=r"no file .*nowhere\.py.*atmosbox.scenes"):
-        scenarios.load(tmp_path / "nowhere.py")
-
-
-def test_a_folder_is_no_scenario(tmp_path):
-    with pytest.raises(FileError, match="is a folder"):
-        scenarios.load(tmp_path)
 
 
 def test_an_own_file_that_fails_is_refused_with_its_line(tmp_path):
@@ -263,17 +155,3 @@ def test_an_own_file_that_fails_is_refused_with_its_line(tmp_path):
         assert str(path) in str(caught.value)
         assert len(str(caught.value).splitlines()) == 1
     assert not [name for name in set(sys.modules) - before if "my_scene" in name]
-
-
-def test_an_own_file_that_is_no_scenario_is_told_what_it_lacks(tmp_path):
-    path = tmp_path / "my_scene.py"
-    path.write_text(OWN_SCENE.replace("headlines", "headings").replace("def theory", "def theories"), encoding="utf-8")
-    with pytest.raises(FileError, match="does not define theory, headlines:"):
-        scenarios.load(path)
-
-
-def test_an_interrupt_while_an_own_file_runs_is_not_swallowed(tmp_path):
-    path = tmp_path / "my_scene.py"
-    path.write_text("raise KeyboardInterrupt", encoding="utf-8")
-    with pytest.raises(KeyboardInterrupt):
-        scenarios.load(path)

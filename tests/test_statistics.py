@@ -55,18 +55,6 @@ def test_a_noisy_series_that_follows_a_slow_one_has_the_error_of_both():
     assert np.mean([each.mean**2 for each in found]) / variance == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / 1000))
 
 
-def test_each_layer_has_its_own_mean_and_error():
-    values = np.stack([np.arange(40.0), np.ones(40)], axis=1)
-    mean, error = block_average(values)
-    assert np.allclose(mean, [19.5, 1.0])
-    assert error[0] > 0.0
-    assert error[1] == 0.0
-
-
-def test_values_that_do_not_divide_evenly_are_dropped_from_the_start():
-    assert float(block_average([100.0, 1.0, 2.0, 3.0, 4.0], blocks=2).mean) == 2.5
-
-
 @pytest.mark.parametrize(
     ("values", "blocks", "sentence"),
     [

@@ -13,17 +13,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from atmosbox import scenarios
 from atmosbox.cli import check
-from atmosbox.errors import DiskFullError, FileError, Option, SettingError, UnitError, UnknownSettingError
-from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.errors import FileError, Option, SettingError, UnitError, UnknownSettingError
 from atmosbox.file.netcdf import read
-from atmosbox.file.output_path import part_path
 from atmosbox.simulation import runner
-from atmosbox.sweep import SweepInterrupted, member, member_seed, parse_vary, plan, sweep
+from atmosbox.sweep import SweepInterrupted, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.result import mean_and_error
 from tests import in_process
 from tests.few_frames import cut
@@ -129,11 +125,6 @@ def test_what_varies_is_typed_as_a_row_or_as_a_list():
         assert [type(value) for value in axis.values] == [type(value) for value in values]
 
 
-def test_a_row_of_even_ratios_has_even_ratios_in_absolute_units():
-    (axis,) = parse_vary(["temperature=100K:400K:3log"], SETTINGS)
-    assert axis.si == pytest.approx((100.0, 200.0, 400.0), rel=1e-12)
-
-
 def test_what_cannot_vary_is_refused_with_what_to_type():
     cases = [
         ("temperature", SettingError, 'has no "="'),
@@ -161,46 +152,6 @@ def test_what_cannot_vary_is_refused_with_what_to_type():
         assert isinstance(refused.value.remedy[0], Option)
 
 
-def test_the_example_of_a_refusal_can_be_typed():
-    for scene in scenarios.names():
-        settings = scenarios.load(scene).Settings
-        for name in {p.name for p in settings.describe()} - {"seed"}:
-            with pytest.raises(SettingError) as refused:
-                parse_vary([f"{name}="], settings)
-            last = refused.value.remedy[-1]
-            example = last.value[name] if isinstance(last, Option) else last.rpartition(" ")[2]
-            assert parse_vary([f"{name}={example}"], settings)
-
-
-@given(st.text(max_size=30), st.sampled_from(["temperature", "molecules", "start", "pressure"]))
-def test_any_text_is_understood_or_refused_in_a_sentence(text, name):
-    try:
-        (axis,) = parse_vary([f"{name}={text}"], SETTINGS)
-        said = "."
-    except SettingError as error:
-        said, axis = str(error), None
-    assert "\n" not in said
-    assert said.endswith(".")
-    assert axis is None or len(set(axis.values)) == len(axis.values) > 0
-
-
-@given(
-    st.floats(-200.0, 1900.0),
-    st.floats(-200.0, 1900.0),
-    st.integers(2, 40),
-    st.sampled_from(["", "log", "lin", " log"]),
-)
-def test_a_row_has_its_ends_its_number_and_an_order(first, last, n, spacing):
-    try:
-        (axis,) = parse_vary([f"temperature={first!r}:{last!r}:{n}{spacing}"], SETTINGS)
-    except SettingError:
-        assert first == last or abs(first - last) < 1e-9 * max(abs(first), abs(last), 1e-300)
-    else:
-        assert (axis.values[0], axis.values[-1]) == (min(first, last), max(first, last))
-        assert len(axis.values) == n
-        assert list(axis.values) == sorted(axis.values)
-
-
 def test_a_sweep_is_refused_before_anything_runs():
     cases = [
         ({"vary": []}, SettingError, "is not given"),
@@ -219,13 +170,6 @@ def test_a_sweep_is_refused_before_anything_runs():
             plan("temperature", words.pop("vary", ["molecules=10,20"]), **words)
 
 
-def test_an_accuracy_picks_an_engine_at_each_point():
-    grid = plan("temperature", ["molecules=200,400"], accuracy="sketch")
-    assert all(grid.engines)
-    assert grid.request()["accuracy"] == "sketch"
-    assert {task.accuracy for task in grid.tasks(Path())} == {"sketch"}
-
-
 def test_seeds_are_those_of_the_documented_rule_and_all_different():
     state = np.random.SeedSequence(7, spawn_key=(3, 2)).generate_state(1, np.uint64)
     assert member_seed(7, 3, 2) == int(state[0]) >> 11
@@ -234,12 +178,6 @@ def test_seeds_are_those_of_the_documented_rule_and_all_different():
     assert max(seeds) < 2**53
     # The mean of 2000 uniform numbers is within 4 standard errors of a half, but for one seed of a sweep in 16 000.
     assert abs(np.mean(seeds) / 2**53 - 0.5) < 4.0 / math.sqrt(12.0 * len(seeds))
-
-
-def test_every_point_gets_its_first_member_before_any_gets_a_second():
-    grid = plan("temperature", ["molecules=10,20", "temperature=0,10"], members=2)
-    assert [(task.point, task.member) for task in grid.tasks(Path())] == [(p, m) for m in (1, 2) for p in (1, 2, 3, 4)]
-    assert grid.values(3) == {"molecules": 20, "temperature": 0.0}
 
 
 def test_the_error_of_a_mean_is_from_the_scatter_where_there_is_enough_of_it():
@@ -314,11 +252,6 @@ def test_a_failed_member_is_missing_with_its_reason_and_the_others_are_not_lost(
     assert found.member_reason.astype(str).values.tolist() == [["", ""], ["The discs have stalled."] * 2]
 
 
-def test_a_point_that_is_refused_is_named_before_anything_runs(scene):
-    with pytest.raises(SettingError, match=r"is no setting to run with \(at trouble=1\)"):
-        plan(scene, ["trouble=0,1"])
-
-
 def test_a_process_that_dies_takes_no_other_run_with_it(scene, tmp_path):
     done = typed(scene, "--vary", "trouble=0,3", "--jobs", "2", "--out", tmp_path / "a.nc", "--json")
     assert done.exit_code == 1, done.output
@@ -327,14 +260,6 @@ def test_a_process_that_dies_takes_no_other_run_with_it(scene, tmp_path):
     found = json.loads(done.stdout)
     assert found["points"][0]["headlines"]["energy_of_light_discs"]["mean"] > 0.0
     assert found["points"][1]["headlines"]["energy_of_light_discs"]["mean"] is None
-
-
-def test_an_energy_budget_that_does_not_close_is_a_failure_of_physics(tmp_path, monkeypatch):
-    monkeypatch.setattr(runner, "LEDGER_LIMIT", -1.0)
-    words = ["--vary", "molecules=10,20", "--set", "duration=2s", "--jobs", "1", "--out", tmp_path / "discs.nc"]
-    done = typed("elastic-collisions", *words)
-    assert done.exit_code == 3
-    assert "member_ledger" in done.stderr
 
 
 def test_a_stopped_sweep_goes_on_within_its_runs_and_finds_the_same(scene, tmp_path, monkeypatch):
@@ -356,20 +281,6 @@ def test_a_stopped_sweep_goes_on_within_its_runs_and_finds_the_same(scene, tmp_p
     fresh = sweep(grid, jobs=1).dataset
     assert fresh.drop_attrs().identical(read(file).drop_attrs())
     assert sweep(plan(scene, ["molecules=10,20,30"], members=3), file, jobs=1).recalled == 6
-
-
-def test_the_command_ends_with_130_when_it_is_stopped(scene, tmp_path, monkeypatch):
-    run = member.run
-
-    def stopping(task, watch):
-        if task.point == 2:
-            raise KeyboardInterrupt
-        return run(task, watch)
-
-    monkeypatch.setattr(member, "run", stopping)
-    done = typed(scene, "--vary", "molecules=10,20", "--jobs", "1", "--out", tmp_path / "a.nc")
-    assert done.exit_code == 130
-    assert "1 of 2 runs are saved in" in done.stderr
 
 
 def test_another_sweep_never_takes_the_place_of_one(scene, tmp_path):
@@ -395,29 +306,6 @@ def test_another_sweep_never_takes_the_place_of_one(scene, tmp_path):
         sweep(plan(**first), tmp_path / "b.nc", jobs=1)
 
 
-def test_the_same_settings_in_other_words_are_the_same_sweep():
-    first = plan("temperature", ["temperature=0degC:10degC:3"], settings={"pressure": "1000hPa"}, engine="exact")
-    second = plan("temperature", ["temperature=283.15K,0,5"], settings={"pressure": "1 bar"})
-    assert first.request() == second.request()
-
-
-def test_a_full_disk_ends_the_sweep_and_keeps_what_is_complete(tmp_path, monkeypatch):
-    grid = plan("elastic-collisions", ["molecules=10,20,30"], settings=QUICK)
-    finish = Checkpoint.finish
-
-    def full(self, dataset):
-        if self.path.name == "3-1.nc":
-            raise DiskFullError("The disk is full.")
-        return finish(self, dataset)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Checkpoint, "finish", full)
-        with pytest.raises(DiskFullError):
-            sweep(grid, tmp_path / "a.nc", jobs=1)
-    done = sweep(grid, tmp_path / "a.nc", jobs=1)
-    assert (done.computed, done.recalled) == (1, 2)
-
-
 def test_the_command_says_the_points_beside_theory(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = typed("elastic-collisions", "--vary", "molecules=10,20", "--set", "duration=2s", "--jobs", "1")
@@ -432,46 +320,6 @@ def test_the_command_says_the_points_beside_theory(tmp_path, monkeypatch):
     quiet = typed("elastic-collisions", "--vary", "molecules=10", "--set", "duration=2s", "--quiet", "--force")
     assert quiet.stdout == "elastic-collisions-sweep.nc\n"
     assert quiet.stderr == ""
-
-
-def test_a_dry_run_shows_the_points_and_writes_nothing(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    words = ["temperature", "--vary", "temperature=0degC:10degC:2", "--vary", "start=equal,maxwell", "--dry-run"]
-    done = typed(*words, "--members", "3")
-    assert done.exit_code == 0, done.output
-    assert "runs: 12, 3 at each of 4 points" in done.stdout
-    assert json.loads(typed(*words, "--json").stdout)["points"][3] == {"temperature": 10.0, "start": "maxwell"}
-    assert not list(tmp_path.iterdir())
-
-
-def test_what_the_command_cannot_do_is_refused(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for words, sentence in [
-        (["--jobs", "0"], "give --jobs 1"),
-        (["--members", "many"], "give --members 8"),
-        (["--seed", "-1"], "give --set seed=0"),
-        (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "leave one of them out"),
-        (["--out", "figure.png"], "name of a figure"),
-    ]:
-        done = typed("elastic-collisions", "--vary", "molecules=10,20", *words)
-        assert done.exit_code == 2
-        assert sentence in done.stderr
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("damage", ["other settings", "cut"])
-def test_a_state_that_does_not_serve_costs_no_run(tmp_path, monkeypatch, damage):
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
-    first, second = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}).tasks(tmp_path)
-    with pytest.raises(runner.Interrupted):
-        member.run((first if damage == "other settings" else second)._replace(path=second.path), stop_after(0.5))
-    part = part_path(second.path)
-    if damage == "cut":
-        part.write_bytes(part.read_bytes()[:5000])
-    shares = []
-    assert member.run(second, lambda share, word: shares.append(share)).reason == ""
-    assert min(shares) < 0.1
-    assert not part.exists()
 
 
 def test_a_killed_sweep_leaves_no_process_and_computes_nothing_twice(scene, tmp_path):

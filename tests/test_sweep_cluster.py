@@ -2,15 +2,13 @@
 
 import os
 import signal
-import sys
 from collections import Counter
 
-import numpy as np
 import pytest
 
-from atmosbox.errors import EngineError, SettingError
+from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read
-from atmosbox.sweep import SweepInterrupted, plan, sweep, workers
+from atmosbox.sweep import plan, sweep, workers
 from tests.few_frames import cut
 
 distributed = pytest.importorskip("distributed")
@@ -82,56 +80,6 @@ def test_a_sweep_outlives_a_killed_worker_and_computes_nothing_twice_that_was_sa
     slow.unlink()
     alone = sweep(grid, jobs=1).dataset
     assert alone.drop_attrs().identical(read(file).drop_attrs())
-
-
-def test_ctrl_c_keeps_what_the_cluster_has_sent_and_the_rest_is_run_here(cluster, tmp_path):
-    def show(share, word):
-        if share >= 0.25:
-            raise KeyboardInterrupt
-
-    grid = discs(members=4)
-    with pytest.raises(SweepInterrupted):
-        sweep(grid, tmp_path / "a.nc", scheduler=cluster.scheduler_address, progress=show)
-    done = sweep(grid, tmp_path / "a.nc", jobs=1)
-    assert done.recalled >= 2
-    assert done.computed + done.recalled == 8
-    assert np.isfinite(done.dataset.energy_of_light_discs_by_member.values).all()
-
-
-def test_workers_with_another_atmosbox_are_refused(cluster, monkeypatch):
-    monkeypatch.setattr(workers, "__version__", "99.0")
-    with pytest.raises(SettingError, match=r"has the worker tcp://.* with atmosbox .*, and this is atmosbox 99\.0"):
-        sweep(discs(), scheduler=cluster.scheduler_address)
-
-
-def test_a_cluster_without_workers_is_refused(monkeypatch):
-    monkeypatch.setattr(workers, "PATIENCE", 1.0)
-    with (
-        distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as empty,
-        pytest.raises(SettingError, match="has no workers: start some with dask worker "),
-    ):
-        sweep(discs(), scheduler=empty.scheduler_address)
-
-
-def test_a_scheduler_that_is_lost_on_the_way_costs_nothing_that_was_saved(tmp_path):
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as lost:
-
-        def show(share, word):
-            if share > 0.0:
-                lost.close()
-
-        grid = discs(members=6)
-        with pytest.raises(EngineError, match="was lost: type the same again"):
-            sweep(grid, tmp_path / "a.nc", scheduler=lost.scheduler_address, progress=show)
-    done = sweep(grid, tmp_path / "a.nc", jobs=1)
-    assert 1 <= done.recalled < 12
-    assert done.recalled + done.computed == 12
-
-
-def test_without_the_library_it_is_said_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(SettingError, match=r"type pip install 'atmosbox\[cluster\]'"):
-        sweep(discs(), scheduler=UNUSED)
 
 
 @pytest.mark.parametrize("address", [UNUSED, "nonsense://here", "tcp://no-such-host.invalid:8786"])

@@ -3,12 +3,8 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 import xarray as xr
 
-from atmosbox.errors import FileError
-from atmosbox.file.netcdf import read, write
-from atmosbox.plot import save
 from atmosbox.plot.sweep_figure import figure, is_sweep
 from atmosbox.sweep import plan
 from atmosbox.sweep.result import join
@@ -109,18 +105,6 @@ def test_vapour_pressures_are_drawn_over_one_over_temperature_with_the_slope_of_
     assert right.get_ylabel() == "temperature (K)"
 
 
-def test_a_sweep_that_lacks_the_slope_is_drawn_as_any_other():
-    drawing = figure(slabs(("vapor_pressure", "vapor_density")))
-    assert [axes.get_xlabel() for axes in drawing.axes] == ["", "temperature of the thermostat and at the start (K)"]
-
-
-def test_molecules_in_even_ratios_stand_on_a_logarithmic_axis():
-    drawing = figure(swept(["molecules=50:5000:5log"]))
-    assert drawing.axes[-1].get_xscale() == "log"
-    assert drawing.axes[-1].get_xlabel() == "number of molecules"
-    assert "(at molecules " in texts(drawing)
-
-
 def test_a_second_setting_of_few_values_becomes_a_family_of_curves():
     drawing = figure(swept(["molecules=100,200", "temperature=0:40:5"], law=by_temperature))
     said = texts(drawing)
@@ -133,59 +117,9 @@ def test_a_second_setting_of_few_values_becomes_a_family_of_curves():
     assert "theory, pressure 500 hPa" in texts(apart)
 
 
-def test_words_stand_on_the_axis_or_in_the_legend():
-    found = swept(["start=equal,maxwell"])
-    drawing = figure(found)
-    assert [tick.get_text() for tick in drawing.axes[-1].get_xticklabels()] == ["equal", "maxwell"]
-    assert drawing.axes[-1].get_xlabel() == "start"
-    both = figure(swept(["start=equal,maxwell", "temperature=0,20,40"], law=by_temperature))
-    assert "start maxwell" in texts(both)
-    assert both.axes[1].get_xlabel() == "temperature of the walls (°C)"
-
-
-def test_of_many_values_of_a_second_setting_six_are_drawn_from_the_first_to_the_last():
-    drawing = figure(swept(["pressure=400:1000:9", "temperature=0:40:10"], law=by_temperature))
-    said = [text.get_text() for text in drawing.axes[0].get_legend().get_texts()]
-    assert said == [*(f"pressure {each:g} hPa" for each in (400, 550, 625, 775, 850, 1000)), "theory, joined"]
-    assert drawing.axes[1].get_xlabel() == "temperature of the walls (°C)"
-
-
-@pytest.mark.parametrize(
-    ("vary", "words", "theme"),
-    [
-        (["temperature=20"], {}, "notes"),
-        (["temperature=0,20"], {"members": 1}, "slides"),
-        (["start=equal,maxwell", "temperature=0:40:2"], {"theory": False}, "slides"),
-        (["molecules=10,100,1000,10000", "pressure=1:1000:4log"], {"theory": False}, "slides"),
-    ],
-)
-def test_every_kind_of_sweep_can_be_drawn_the_same_to_the_byte(tmp_path, vary, words, theme):
-    found = swept(vary, **words)
-    first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
-    again = read(write(found, tmp_path / "sweep.nc"))
-    assert save(again, tmp_path / "second.svg", theme=theme).read_bytes() == first
-
-
-def test_a_sweep_of_gravity_which_is_a_variable_of_runs_too_is_read_again(tmp_path):
-    write(swept(["gravity=5,10"], members=2, scene="atmosphere"), tmp_path / "s.nc")
-    assert read(tmp_path / "s.nc").gravity.values.tolist() == [5.0, 10.0]
-
-
-def test_values_that_span_powers_of_ten_stand_on_a_logarithmic_axis():
-    drawing = figure(swept(["duration=1ns,10ns,20ns"], law=lambda v: (300.0, 10.0 ** (v["duration"] / 3.0))))
-    assert drawing.axes[1].get_yscale() == "log"
-
-
 def test_a_failed_point_is_left_out_and_the_rest_is_drawn():
     found = swept(["temperature=0,20,40"], law=by_temperature)
     for name in LABELS:
         for part in (name, f"{name}_se", f"{name}_theory"):
             found[part][1] = np.nan
     assert np.isfinite(curves(figure(found).axes[0])[0]).sum() == 2
-
-
-def test_what_cannot_be_drawn_is_said():
-    with pytest.raises(FileError, match="at most two settings"):
-        figure(swept(["temperature=0,20", "molecules=10,20", "start=equal,maxwell"]))
-    with pytest.raises(FileError, match="no run of this sweep has measured anything"):
-        figure(join(plan("temperature", ["temperature=0,20"]), {}, {}))

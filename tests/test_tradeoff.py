@@ -17,9 +17,9 @@ from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli import tradeoff as command
 from atmosbox.engine import CoarseStepWarning
-from atmosbox.errors import FileError, SettingError, UnknownSettingError
-from atmosbox.file.netcdf import read, write
-from atmosbox.plot import save, tradeoff_figure
+from atmosbox.errors import FileError, SettingError
+from atmosbox.file.netcdf import read
+from atmosbox.plot import save
 from atmosbox.plot.tradeoff_figure import recommended
 from atmosbox.scene.setup import Series
 from atmosbox.simulation.accuracy import choose
@@ -69,19 +69,6 @@ def test_a_series_becomes_ways_of_running_with_options_and_settings():
     assert made[1].label == "exact, molecules=50, seed=3, ascent=100"
 
 
-def test_a_series_of_what_no_engine_knows_is_refused():
-    with pytest.raises(UnknownSettingError, match="delt"):
-        ways_of([Series("stepped:delt=0.1", "ascent", (1,))], {})
-    with pytest.raises(SettingError, match="ladder"):
-        ways_of([], {})
-
-
-def test_every_way_that_a_scene_declares_is_accepted_by_it():
-    for module in map(scenarios.load, scenarios.names()):
-        for way in ways_of(module.ladder, {}):
-            module.Settings.from_user(way.settings)
-
-
 def test_bias_and_noise_are_told_apart():
     # A hundred members with an error of 0.5 and a scatter of 2: four standard errors, a false alarm in 16 000 seeds.
     rng = np.random.default_rng(1)
@@ -90,12 +77,6 @@ def test_bias_and_noise_are_told_apart():
     assert abs(bias - 0.5) < 4.0 * se
     assert se == pytest.approx(noise / 10.0)
     assert abs(noise - 2.0) < 4.0 * 2.0 / math.sqrt(200.0)
-
-
-def test_few_members_are_judged_by_their_own_error_bars():
-    bias, se, noise = _summary(np.array([[1.0], [3.0]]), np.array([[3.0], [4.0]]))
-    assert (bias, noise) == (2.0, pytest.approx(math.sqrt(12.5)))
-    assert se == pytest.approx(noise / math.sqrt(2.0))
 
 
 def test_the_noise_of_a_curve_is_no_bias():
@@ -119,20 +100,6 @@ def test_a_measurement_has_errors_beside_costs(found):
     assert one.unit.item() == "K"
     assert (one.noise.values > 0.0).all()
     assert np.allclose(one.bias_se.values, one.noise.values / np.sqrt(found.members.values))
-
-
-def test_two_series_that_cross_share_a_run(runs):
-    default = scenarios.load("elastic-collisions").Settings().molecules
-    cross = [
-        *DISCS[:1],
-        Way("exact", {"duration": 2.0, "molecules": default}, 1, float(default)),
-        Way("exact", {"duration": 2.0, "molecules": default // 2}, 1, default / 2.0),
-    ]
-    found = measure("elastic-collisions", budget=60.0, ways=cross)
-    assert {label for label, _ in runs} == {cross[0].label, cross[2].label}
-    for name in ("bias", "engine_seconds", "members"):
-        assert np.array_equal(found[name].values[0], found[name].values[1])
-    assert found.members.values[0] == 2
 
 
 def test_what_takes_too_long_or_an_engine_cannot_do_is_said_and_the_rest_is_measured(runs):
@@ -183,51 +150,10 @@ def test_the_budget_is_kept_and_what_fits_is_run():
     assert watched.said == ["", "", "", "left out: one run takes about 500 s"]
 
 
-def test_nothing_is_measured_only_if_no_run_fits_into_the_budget():
-    # the estimates take 9 s of the 40 s
-    assert Clock(40.0, [0.0] * 10, [35.0, *[60.0] * 9]).counts == [1, *[0] * 9]
-    spent = Clock(40.0, [0.0] * 2, [45.0, 50.0])
-    assert spent.counts == [0, 0]
-    assert spent.now < 80.0
-    assert spent.said[0] == "left out: one run takes about 45 s"
-
-
-def test_those_with_the_fewest_runs_come_first():
-    watched = Clock(60.0, [0.0] * 3, [2.0, 1.0, 4.0])
-    assert max(watched.counts) - min(watched.counts) <= 4
-    assert watched.log[:3] == [0, 1, 2]
-    assert sum(n * t for n, t in zip(watched.counts, (2.0, 1.0, 4.0), strict=True)) > 50.0
-
-
-def test_the_time_of_compiling_does_not_count(runs, monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr(repetition.time, "perf_counter", lambda: now[0])
-    monkeypatch.setattr(timed_run, "compile_way", lambda *way: now.__setitem__(0, now[0] + 100.0))
-    monkeypatch.setattr(repetition.repeat, "__defaults__", (*repetition.repeat.__defaults__[:-1], lambda: now[0]))
-    assert measure("elastic-collisions", ways=DISCS, budget=1.0).members.values.tolist() == [2, 2]
-
-
 def test_an_impossible_budget_is_refused():
     for budget in [0.0, -1.0, math.nan, math.inf, 1e9]:
         with pytest.raises(SettingError, match='budget="40s"'):
             measure("lifting-dry", budget=budget)
-
-
-def test_ctrl_c_keeps_what_was_measured():
-    def stop(share, word):
-        if "ascent=40" in word:
-            raise KeyboardInterrupt
-
-    found = measure("lifting-dry", ways=ways_of(QUICK, {}), budget=30.0, progress=stop)
-    assert found.attrs["atmosbox_status"] == "interrupted"
-    assert found.members.values.tolist() == [1, 0, 0]
-
-
-@pytest.mark.parametrize("theme", ["notes", "slides"])
-def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_path, theme):
-    saved = write(found, tmp_path / "trade.nc")
-    first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
-    assert save(read(saved), tmp_path / "second.svg", theme=theme).read_bytes() == first
 
 
 def stored(scene):
@@ -243,39 +169,6 @@ def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
     assert enough == chosen.met
     assert str(way.engine.item()) == chosen.way.engine
     assert scenarios.load(scene).Settings.from_user(json.loads(way.settings.item())).changed() == chosen.way.settings
-
-
-@pytest.mark.parametrize("scene", ["atmosphere", "lifting-dry", "lifting-moist", "temperature-large"])
-@pytest.mark.parametrize("theme", ["notes", "slides"])
-def test_the_figure_names_its_curves_and_the_recommended_run_within_the_page(scene, theme):
-    dataset = stored(scene)
-    drawing = tradeoff_figure.figure(dataset, theme)
-    drawing.draw_without_rendering()
-    (axes,) = drawing.axes
-    words = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert sum(text.startswith("recommended: ") for text in words) == 1
-    assert len(words) == 1 + len({int(row) for row in dataset.series.values[dataset.members.values > 0]})
-    box = axes.get_legend().get_window_extent()
-    assert drawing.bbox.x0 < box.x0
-    assert box.x1 < drawing.bbox.x1
-    assert box.y0 > axes.bbox.y1
-
-
-def test_another_experiment_is_not_recommended_however_good():
-    column = stored("atmosphere")
-    flat = column.settings.str.contains("plane")
-    assert flat.any()
-    perfect = {name: column[name].where(~flat, 0.0) for name in ("bias", "bias_se", "noise")}
-    best, _ = recommended(column.assign(engine_seconds=column.engine_seconds.where(~flat, 1e-9), **perfect))
-    assert not flat[best]
-
-
-def test_where_nothing_is_accurate_enough_the_most_accurate_is_marked():
-    unfit = stored("lifting-dry")
-    best, enough = recommended(unfit.assign(noise=unfit.noise + 10.0))
-    assert not enough
-    assert str(unfit.rung.values[best]).startswith(("exact", "dsmc"))
-    assert recommended(unfit.assign(engine_seconds=unfit.engine_seconds * np.nan)) is None
 
 
 def test_the_table_has_a_line_for_every_run(found):
@@ -295,20 +188,6 @@ def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):
     said = json.loads(done.stdout)
     assert said["files"] == ["lifting-dry-tradeoff.nc", "lifting-dry-tradeoff.csv", "lifting-dry-tradeoff.png"]
     assert all((tmp_path / name).stat().st_size > 100 for name in said["files"])
-
-
-def test_the_command_refuses_with_a_sentence(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for words, wanted in [
-        (["--budget", "5 km"], "--budget 40s"),
-        (["--budget", "0.1s"], "--budget"),
-        (["--seed", "-1"], "--seed"),
-        (["--set", "molecules=none"], "molecules"),
-    ]:
-        done = CliRunner().invoke(app, ["tradeoff", "lifting-dry", *words])
-        assert done.exit_code == 2, done.output
-        assert wanted in done.output
-    assert not list(tmp_path.iterdir())
 
 
 KILLED = """
@@ -350,8 +229,3 @@ def test_a_tradeoff_that_was_killed_goes_on_to_the_same_errors(tmp_path, runs):
     assert len(found.attrs["history"].splitlines()) == 2
     for name in ("bias", "bias_se", "noise", "members", "ledger", "missed", "escaped", "theory"):
         assert found[name].values.tobytes() == undisturbed[name].values.tobytes(), name
-
-
-def test_a_file_of_an_earlier_version_can_be_checked():
-    done = CliRunner().invoke(app, ["check", str(ROOT / "benchmarks" / "tradeoff-lifting-dry.nc")])
-    assert "FAILED" not in done.output

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from atmosbox.scene.units import Scale
-from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER, Species
+from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
 
 def test_the_constants_are_those_of_the_si():
@@ -13,20 +13,6 @@ def test_the_constants_are_those_of_the_si():
     assert AVOGADRO == 6.02214076e23
     assert pytest.approx(8.31446261815324, rel=1e-15) == GAS_CONSTANT
     assert STANDARD_GRAVITY == 9.80665
-
-
-@pytest.mark.parametrize(("species", "grams", "rotational_dof"), [(DRY_AIR, 28.9647, 2), (WATER, 18.01528, 3)])
-def test_a_mole_of_molecules_has_the_molar_mass(species, grams, rotational_dof):
-    assert species.molar_mass == pytest.approx(grams * 1e-3, rel=1e-15)
-    assert species.molecule_mass * AVOGADRO == pytest.approx(species.molar_mass, rel=1e-15)
-    assert species.rotational_dof == rotational_dof
-    assert 0.2e-9 < species.diameter < 0.5e-9
-
-
-def test_species_and_scales_cannot_be_changed():
-    for thing, name in ((DRY_AIR, "diameter"), (Scale(1.0, 1.0, 1.0), "mass")):
-        with pytest.raises(AttributeError):
-            setattr(thing, name, 2.0)
 
 
 def air(weight=1.0):
@@ -44,11 +30,6 @@ def test_the_units_of_a_scale_fit_together():
     # The pressure on a wall is the impulse that it receives per area and time.
     impulse_per_area_and_time = scale.weight * scale.mass * scale.velocity / (scale.length**2 * scale.time)
     assert impulse_per_area_and_time == pytest.approx(scale.pressure, rel=1e-14)
-
-
-def test_reduced_temperature_times_the_unit_of_temperature_is_the_temperature():
-    scale = Scale(1e-9, 5e-26, 3e-21)
-    assert scale.reduced_temperature(250.0) * scale.temperature == pytest.approx(250.0, rel=1e-15)
 
 
 def test_eight_hundred_molecules_of_air_at_1000_hpa_fill_a_cube_of_32_nm():
@@ -73,8 +54,3 @@ def test_a_scale_must_be_positive_and_finite():
             sizes[place] = wrong
             with pytest.raises(ValueError, match="must be positive and finite"):
                 Scale(*sizes)
-
-
-def test_a_lecturer_can_add_a_species():
-    argon = Species("argon", 39.948e-3, 39.948e-3 / AVOGADRO, 0.36e-9, 0)
-    assert argon.rotational_dof == 0

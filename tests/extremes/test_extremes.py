@@ -27,7 +27,7 @@ def nothing_hangs():
         pytest.param(
             *(name, case),
             id=f"{name}, {case.name}",
-            marks=[pytest.mark.validate] if name in case.later.split() else [],
+            marks=[pytest.mark.nightly] if name in case.later.split() else [],
         )
         for name in engines.names()
         for family in FAMILIES.values()

@@ -1,10 +1,7 @@
 """The page in a real browser, opened from disk and without a network."""
 
-import io
-
 import numpy as np
 import pytest
-from matplotlib.image import imread
 
 from atmosbox.page.document import _text, words
 from atmosbox.page.saved_run import pages
@@ -88,18 +85,6 @@ def test_arrows_step_through_the_frames_and_change_the_pace(opened):
     assert page.inner_text("#pace") == pace
 
 
-def test_one_to_four_choose_where_to_look_from(opened):
-    page = opened("warm")
-    seen = set()
-    for key in "1234":
-        page.keyboard.press(key)
-        pressed = page.locator("#cameras button[aria-pressed=true]")
-        assert pressed.count() == 1
-        assert pressed.inner_text().startswith(key)
-        seen.add(picture(page))
-    assert len(seen) == 4
-
-
 def test_a_molecule_is_followed_by_a_click_and_by_a_key(opened):
     page = opened("warm")
     assert page.inner_text("#status") == ""
@@ -131,19 +116,6 @@ def test_a_click_on_a_graph_over_time_goes_there_and_what_is_to_come_is_veiled(o
     assert page.locator(".graph.profile .dot").first.is_visible()
 
 
-def test_axes_carry_names_and_units_and_the_caption_says_how_it_is_drawn(opened):
-    page = opened("warm")
-    labels = page.locator(".labels span.axis").all_inner_texts()
-    assert {"x (nm)", "y (nm)", "height z (nm)"} == set(labels)
-    units = page.locator(".graph .unit").all_inner_texts()
-    assert {"temperature (°C)", "time (ns)", "speed (m/s)", "share of molecules (%)"} <= set(units)
-    page.click(".more")
-    words = page.inner_text("#caption")
-    assert "Warm walls." in words
-    assert "times as wide as they are" in words
-    assert "atmosbox 1.0 · temperature · 60 molecules · seed 3" in words
-
-
 def test_two_runs_stand_side_by_side_on_one_clock(opened):
     page = opened("pair")
     assert page.locator(".box canvas").count() == 2
@@ -173,6 +145,7 @@ def test_water_is_told_from_air_and_c_changes_what_colours_mean(opened):
     assert "clumps" in page.inner_text("#caption")
 
 
+@pytest.mark.nightly
 def test_a_projector_shows_all_at_once(opened):
     page = opened("warm")
     size = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
@@ -194,55 +167,6 @@ def test_a_phone_needs_no_scrolling_sideways_and_has_the_bar_at_hand(opened):
     page.locator("#play").tap()
     until(page, "Number(document.body.dataset.time) > 0.011")
     assert page.locator(".box").bounding_box()["width"] <= PHONE[0]
-
-
-def test_the_page_takes_the_colours_that_the_reader_prefers_and_d_turns_them(opened):
-    def lightness(page):
-        text = page.evaluate("getComputedStyle(document.body).backgroundColor")
-        return sum(int(part) for part in text[4:-1].split(",")) / 765
-
-    light, dark = opened("warm"), opened("warm", color_scheme="dark")
-    assert lightness(light) > 0.9
-    assert lightness(dark) < 0.2
-    assert picture(light) != picture(dark)
-    light.keyboard.press("d")
-    assert lightness(light) < 0.2
-
-
-def warmth(page):
-    """Return the excess of red over blue in the picture."""
-    red, _, blue = imread(io.BytesIO(picture(page)))[..., :3].mean(axis=(0, 1))
-    return red - blue
-
-
-def test_walls_look_warmer_when_they_are(opened):
-    page = opened("heated")
-    cold = warmth(page)
-    page.keyboard.press("End")
-    assert warmth(page) > cold + 0.02
-
-
-def test_a_run_of_one_molecule_and_one_frame_opens_and_stands_still(opened):
-    page = opened("still")
-    page.keyboard.press("Space")
-    page.keyboard.press("ArrowRight")
-    assert time(page) == pytest.approx(0.01)
-
-
-def test_five_thousand_molecules_can_be_stepped_through(opened):
-    page = opened("large")
-    before = picture(page)
-    page.keyboard.press("ArrowRight")
-    assert picture(page) != before
-
-
-def test_the_list_of_keys_opens_and_closes(opened):
-    page = opened("warm")
-    page.keyboard.press("?")
-    assert page.locator("dialog").is_visible()
-    assert "play or pause" in page.inner_text("dialog")
-    page.keyboard.press("Escape")
-    assert not page.locator("dialog").is_visible()
 
 
 def test_the_page_draws_the_same_numbers_as_the_figure_of_the_run(browser, run):

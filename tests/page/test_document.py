@@ -5,10 +5,9 @@ import json
 import re
 from importlib import resources
 
-import numpy as np
 import pytest
 
-from atmosbox.errors import FileError, SettingError
+from atmosbox.errors import FileError
 from atmosbox.page import lab_page, save, view_page
 from atmosbox.page.document import MODULES
 from atmosbox.page.saved_run import pages
@@ -75,14 +74,6 @@ def test_the_same_run_gives_the_same_bytes(run, tmp_path):
     assert first == second
 
 
-def test_eight_hundred_molecules_in_four_hundred_frames_are_ten_megabytes_at_most(run, tmp_path):
-    path = save([run(400, 800)], tmp_path / "page.html")
-    assert path.stat().st_size <= 10_000_000
-    (record,) = told(path.read_text(encoding="utf-8"))
-    assert record["stage"]["molecules_shown"] == 800
-    assert not any("frames are drawn" in note for note in record["notes"])
-
-
 def test_a_run_that_is_larger_than_a_page_is_thinned_and_the_page_says_so(run, tmp_path):
     path = save([run(400, 6000)], tmp_path / "page.html")
     assert path.stat().st_size <= 10_000_000
@@ -91,12 +82,6 @@ def test_a_run_that_is_larger_than_a_page_is_thinned_and_the_page_says_so(run, t
     assert f"{shown} of the 6000 molecules are drawn." in record["notes"]
     assert any(note.startswith("240 of the 400 frames are drawn") for note in record["notes"])
     assert len(record["values"]["air_temperature"]) == 400
-
-
-def test_mist_is_drawn_as_clumps_and_the_page_says_who_chose_their_places(run):
-    (page,) = pages([run(5, 50, water=20)])
-    assert any("clumps" in note for note in page.record["notes"])
-    assert [kind["name"] for kind in page.record["stage"]["species"]] == ["dry air", "water"]
 
 
 def test_two_runs_are_headed_by_what_was_changed_and_share_a_scale_of_colours(run):
@@ -111,19 +96,6 @@ def test_two_runs_are_headed_by_what_was_changed_and_share_a_scale_of_colours(ru
     assert [page.record["heading"] for page in pages([run(), other])] == ["Warmth", "Another"]
 
 
-def test_values_that_are_not_known_are_null(run):
-    dataset = run()
-    dataset["air_temperature"][3] = np.nan
-    (page,) = pages([dataset])
-    assert page.record["values"]["air_temperature"][3] is None
-
-
-def test_a_run_that_was_stopped_before_theory_is_shown_without(run):
-    (page,) = pages([run().drop_vars("air_temperature_theory")])
-    (panel, _) = page.record["stage"]["panels"]
-    assert [line["label"] for line in panel["lines"]] == ["molecules"]
-
-
 def test_a_run_that_cannot_be_shown_is_refused_with_what_to_type(run, tmp_path):
     whole = run()
     for spoilt, said in [
@@ -136,35 +108,3 @@ def test_a_run_that_cannot_be_shown_is_refused_with_what_to_type(run, tmp_path):
         with pytest.raises(FileError, match=said):
             save([spoilt], tmp_path / "page.html")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_an_unknown_theme_is_refused(run, tmp_path):
-    with pytest.raises(SettingError, match="pink"):
-        save([run(2, 3)], tmp_path / "page.html", theme="pink")
-
-
-def test_runs_whose_clocks_count_differently_are_not_shown_together(run):
-    slow = run()
-    slow["elapsed_time"].attrs["units"] = "s"
-    with pytest.raises(FileError, match="in ns and s, and cannot share a clock: view one by one"):
-        pages([run(), slow])
-
-
-def test_a_single_molecule_at_rest_is_a_page_too(run):
-    still = run(3, 1)
-    still["molecule_speed"] = 0.0 * still.molecule_speed
-    (page,) = pages([still])
-    assert page.record["stage"]["speed"]["high"] == 1.0
-
-
-def test_water_that_is_all_in_the_liquid_has_no_speed_and_nothing_warns(run):
-    dry = run(3, 4, water=4)
-    dry["molecule_speed"] = np.nan * dry.molecule_speed
-    dry["molecule_position"] = np.nan * dry.molecule_position
-    (page,) = pages([dry])
-    assert len(page.frames) == 3
-
-
-def test_the_page_names_the_run_that_would_show_collisions(run):
-    (page,) = pages([run(5, 50, settings={"duration": 0.05})])
-    assert any("A run with duration=" in note and note.endswith("ns shows them.") for note in page.record["notes"])

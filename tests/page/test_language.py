@@ -9,7 +9,6 @@ import pytest
 
 from atmosbox import scenarios
 from atmosbox.cli.option import Language
-from atmosbox.page import view_page
 from atmosbox.page.control import knob_controls, setting_controls
 from atmosbox.page.document import LANGUAGES, words
 from atmosbox.page.lesson import lesson_of
@@ -82,12 +81,6 @@ def test_every_word_that_the_page_asks_for_is_in_the_table_and_none_is_left_over
 def test_all_that_scenes_say_on_a_page_is_translated(language):
     table = words(language)["phrase"]
     assert said_by_scenes() - set(table) == set()
-
-
-def test_a_page_carries_the_tables_that_it_may_need():
-    assert "Erst kühlt das Becken" in view_page([], [])
-    assert "Se enfría el agua" not in view_page([], [], language="de")
-    assert '<html lang="de"' in view_page([], [], language="de")
 
 
 def test_a_reader_gets_the_language_that_was_asked_for_or_that_of_the_browser(browser, site, run, tmp_path):

@@ -6,7 +6,6 @@ import pytest
 from atmosbox.file.molecules import molecules
 from atmosbox.file.netcdf import read, write
 from atmosbox.page.page_box import page_box
-from atmosbox.page.saved_run import pages
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import DRY_AIR, WATER
 
@@ -43,13 +42,6 @@ def test_every_molecule_is_in_the_box_of_its_frame(saved, scene):
     assert ((place <= side + rounding) | ~known).all()
 
 
-@pytest.mark.parametrize("scene", RUNS)
-def test_a_run_of_the_scene_becomes_a_page(saved, scene):
-    (page,) = pages([saved(scene)])
-    assert len(page.frames) == saved(scene).sizes["elapsed_time"]
-    assert len(page.record["stage"]["panels"]) >= 3
-
-
 def test_the_ceiling_of_a_lifted_parcel_is_where_its_piston_is(saved):
     run = saved("lifting-dry")
     np.testing.assert_allclose(run.box_side.sel(axis="z"), run.piston_height, rtol=1e-12)
@@ -58,14 +50,6 @@ def test_the_ceiling_of_a_lifted_parcel_is_where_its_piston_is(saved):
     seen = molecules(run)
     assert page_box(seen).walls == ("specular",) * 5 + ("piston",)
     assert page_box(seen).reach == height.max()
-
-
-def test_heat_baths_are_known_with_their_temperatures(saved):
-    seen = molecules(saved("temperature"))
-    assert page_box(seen).walls == ("heat_bath",) * 6
-    np.testing.assert_allclose(page_box(seen).wall_temperature, 298.15)
-    assert not page_box(seen).gravity
-    assert not page_box(seen).planar
 
 
 def test_the_floor_under_a_pool_is_a_pool_and_its_molecules_are_water_from_the_start(saved):
@@ -86,12 +70,3 @@ def test_drops_have_places_inside_the_box_and_as_many_as_there_are(saved):
     np.testing.assert_allclose(np.nanmax(radius, axis=1), run.largest_drop_radius)
     inside = (place >= radius[:, :, None]) & (place <= run.box_side.values[:, None, :] - radius[:, :, None])
     assert (inside | ~alive[:, :, None]).all()
-
-
-def test_flat_scenes_keep_their_discs_without_being_asked(tmp_path):
-    outcome = runner.execute(runner.prepare("elastic-collisions", {"duration": "2 s"}))
-    seen = molecules(read(write(outcome.dataset, tmp_path / "discs.nc")))
-    assert seen.discs
-    assert page_box(seen).planar
-    assert page_box(seen).unit == "m"
-    assert seen.position.shape[1:] == (60, 3)

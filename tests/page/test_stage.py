@@ -24,24 +24,6 @@ def test_how_much_wider_molecules_are_drawn_is_what_the_stage_says():
     assert told["exaggeration"] == f"Molecules are drawn {factor:g} times as wide as they are."
 
 
-def test_molecules_that_are_large_enough_are_drawn_as_they_are():
-    told = air(diameter=1.2e-9).record
-    assert told["species"][0]["drawn"] == told["species"][0]["diameter"]
-    assert told["exaggeration"] == (
-        "Molecules collide as if 3.2 times as wide as those of air, and are drawn as wide as they collide."
-    )
-
-
-def test_molecules_are_drawn_smaller_where_drops_are_to_be_seen():
-    alone, beside = air(800).record, air(800, drops=True).record
-    assert beside["species"][0]["drawn"] < 0.6 * alone["species"][0]["drawn"]
-    assert beside["exaggeration"] != alone["exaggeration"]
-
-
-def test_molecules_without_a_size_are_drawn_and_the_stage_says_that_they_have_none():
-    assert "points" in air(diameter=0.0).record["exaggeration"]
-
-
 def test_water_is_drawn_smaller_by_the_cube_root_of_its_mass():
     water = np.arange(10) < 4
     mass = np.where(water, WATER.molecule_mass, DRY_AIR.molecule_mass)
@@ -71,23 +53,6 @@ def test_a_pool_is_a_layer_and_a_mist_is_clumps(floor, drops):
     rainy = told.frame(0, 0.0, NANO.length, place, speed, liquid=10, rained=2)
     assert len(wet) == len(still) + 16 * drops
     assert len(rainy) == len(wet) + 16
-
-
-def test_a_frame_takes_molecules_of_all_and_keeps_those_that_are_shown():
-    told = air(100, most=10)
-    assert len(told.shown) == told.record["molecules_shown"] == 10
-    assert told.record["molecules"] == 100
-    assert len(told.frame(0, 0.0, NANO.length, np.full((100, 3), 1e-8), np.ones(100))) == 36 + 8 * 10
-
-
-@pytest.mark.parametrize("fastest", [0.0, np.nan])
-def test_molecules_at_rest_have_a_scale_of_speeds_nevertheless(fastest):
-    assert air(fastest=fastest).record["speed"]["high"] == 1.0
-
-
-def test_a_wall_without_a_temperature_has_none():
-    box = Box(NANO.length, wall_temperature=(300.0, float("nan"), None, 1.0, 2.0, 3.0))
-    assert air(box=box).record["box"]["wall_temperature"] == [300.0, None, None, 1.0, 2.0, 3.0]
 
 
 def test_a_misfit_in_degrees_is_read_in_kelvins():

@@ -1,3 +1,5 @@
+"""One made-up sounding in several formats."""
+
 import numpy as np
 import pytest
 

@@ -120,10 +120,6 @@ def test_any_levels_make_a_sounding_or_a_sentence(path, levels, ground, depressi
     outcome(path, "\n".join(lines).encode())
 
 
-def test_a_unit_with_a_sign_that_cannot_be_printed_is_refused_in_a_sentence_that_can(path):
-    assert outcome(path, GOOD.replace("degC", "deg\x1bC").encode()) is None
-
-
 def test_the_fuzz_reaches_a_sounding(path):
     assert len(outcome(path, GOOD.encode())) == 5
     assert outcome(path, GOOD.replace("850", "1850").encode()) is None
