@@ -54,10 +54,10 @@ def lab(usual_tab, tmp_path):
     """A function that opens the page of a scene, at a link."""
     opened = []
 
-    def show(scene, settings, link=""):
+    def show(scene, settings, link="", *, others=False):
         path = tmp_path / f"{scene}.html"
         if not path.exists():
-            save_lab(prepare(scene, SCENES[scene] | settings, engine="exact"), path, others=False)
+            save_lab(prepare(scene, SCENES[scene] | settings, engine="exact"), path, others=others)
         opened.append(Lab(usual_tab, path.as_uri() + link))
         return opened[-1]
 
@@ -68,19 +68,22 @@ def lab(usual_tab, tmp_path):
 
 def link_of(shown):
     """Return the link of the run in a page."""
-    shown.page.evaluate("delete document.body.dataset.link")
-    shown.ask(type="link")
-    return shown.page.wait_for_selector("body[data-link]").get_attribute("data-link")
+    shown.page.click("#link")
+    text = shown.page.input_value("#linked")
+    shown.page.keyboard.press("Escape")
+    command, link = text.split("\n")  # for a page that was opened from a file
+    assert shlex.split(command) == ["atmosbox", "run", "--replay", link]
+    return link
 
 
-def end_of(link):
+def end_of(link, least=100):
     """Return the SHA-256 of the state after the run of a link in Python."""
     prepared = replayed(link)
     setup = build(prepared)
     recording = Recording(prepared, setup, {})
     while recording.frames < prepared.frames(setup):
         recording.advance(lambda now: None)
-    assert setup.parcel.contacts > 100
+    assert setup.parcel.contacts > least
     return state_of(setup.parcel)
 
 
@@ -202,3 +205,38 @@ def test_a_link_excludes_settings_of_its_own():
         atmosbox.run(replay=WHOLE, molecules=60)
     with pytest.raises(UnknownSceneError, match="No scene is given"):
         atmosbox.run()
+
+
+def test_a_page_opens_the_links_of_its_starts_and_refuses_others_in_a_sentence(lab):
+    shown = lab("elastic-collisions", {"molecules": 10}, others=True)
+    first = shown.digest()
+    for name, value in (("molecules", "5"), ("seed", "3")):
+        shown.ask(type="set", name=name, value=value)
+        shown.ask(type="frames", value=20)
+        link, state = link_of(shown), shown.digest()
+        assert end_of(link, least=5) == state
+        shown.page.goto(shown.page.url.partition("#")[0] + link)  # which opens the page anew
+        shown.page.wait_for_selector("body[data-ready]")
+        shown.ask(type="frames", value=20)
+        assert shown.digest() == state
+    for part, wrong, sentence in (
+        ("&end", "&en", "This link is damaged"),
+        ("=", "=9.", f"This link is of atmosbox 9.{__version__}"),
+        ("elastic-collisions", "mountains", "This link is for the scene mountains: open it in the page that atmosbox lab"),
+        ("seed=3", "seed=99", "This page has no box with the settings of the link: type atmosbox run --replay"),
+        ("&frames", "&turns=0:heat:3&frames", "heat = 3 cannot be turned in frame 0"),
+    ):  # fmt: skip
+        shown.page.goto(shown.page.url.partition("#")[0] + link.replace(part, wrong, 1))
+        assert sentence in shown.note()
+        shown.page.locator("#notes button").click()
+    assert shown.digest() != first  # the box of the last link, without its turn
+
+
+def test_a_page_inside_of_another_has_no_header_and_tells_its_height(lab, tmp_path):
+    page = lab("elastic-collisions", {"molecules": 10}).page
+    hears = "addEventListener('message', ({ data }) => { document.body.dataset.told = data.height; })"
+    frame = '<iframe src="elastic-collisions.html?embed" width="1000" height="300"></iframe>'
+    (tmp_path / "course.html").write_text(f"<body><script>{hears}</script>{frame}", encoding="utf-8")
+    page.goto((tmp_path / "course.html").as_uri())
+    assert 500 < float(page.wait_for_selector("body[data-told]").get_attribute("data-told")) < 800
+    assert not page.frames[1].locator("header").is_visible()
