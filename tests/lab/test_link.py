@@ -222,7 +222,7 @@ def test_a_page_opens_the_links_of_its_starts_and_refuses_others_in_a_sentence(l
     for part, wrong, sentence in (
         ("&end", "&en", "This link is damaged"),
         ("=", "=9.", f"This link is of atmosbox 9.{__version__}"),
-        ("elastic-collisions", "mountains", "This link is for the scene mountains: open it in the page that atmosbox lab"),
+        ("elastic-collisions", "mountains", "This link is for the scene mountains: open it in the page that"),
         ("seed=3", "seed=99", "This page has no box with the settings of the link: type atmosbox run --replay"),
         ("&frames", "&turns=0:heat:3&frames", "heat = 3 cannot be turned in frame 0"),
     ):  # fmt: skip
