@@ -8,7 +8,7 @@ Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (t
 `frame` (one moment as bytes), `thinning` (what is left out of a large run), `saved_run` (from a dataset to all of
 these), `word` (the sentences), `control`, `gauge` and `lesson` (what only a box that runs has), `document` (the HTML)
 and `page_file`. The folder ``web`` holds the page's own
-scripts, ``vendor`` the two libraries that draw the page.
+scripts, ``vendor`` the two libraries that draw the page, and the one that makes QR codes.
 """
 
 from atmosbox.page.document import lab_page, view_page

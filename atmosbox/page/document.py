@@ -47,7 +47,7 @@ MODULES = (
 
 _ENTRIES = {
     "view": ("view.js",),
-    "lab": ("controls.js", "notes.js", "player.js", "gauges.js", "lesson.js", "engine.js", "lab.js"),
+    "lab": ("controls.js", "notes.js", "player.js", "gauges.js", "lesson.js", "engine.js", "link.js", "lab.js"),
 }
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 
@@ -148,7 +148,9 @@ def words(language: str) -> dict[str, Any]:
 
 def _document(entry: str, title: str, theme: str, language: str, data: Iterable[str], *, served: bool = False) -> str:
     """Return the HTML document that contains some data."""
+    libraries = ("three", "uplot", "lean-qr") if entry == "lab" else ("three", "uplot")
     scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
+    scripts += [_module("qr.mjs", _text("vendor", "lean-qr", "nano.mjs"))] if entry == "lab" else []
     scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
     first = "en" if language == "auto" else language
     said = words(first)["page"]
@@ -169,7 +171,7 @@ def _document(entry: str, title: str, theme: str, language: str, data: Iterable[
         "MODULES": "\n".join(scripts),
         "DATA": "\n".join(data),
         "BOOT": _inline(_text("web", "boot.js")),
-        "LICENCES": "\n".join(f"{name}:\n{_text('vendor', name, 'LICENSE')}" for name in ("three", "uplot")),
+        "LICENCES": "\n".join(f"{name}:\n{_text('vendor', name, 'LICENSE')}" for name in libraries),
     }
     pieces = _text("web", "page.html").split("@@")
     return "".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces))

@@ -1,13 +1,19 @@
 """The link of a run: the page and Python run it to the last bit, and what is wrong with it is said in a sentence."""
 
+import contextlib
 import json
 import random
+import re
 import shlex
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+import atmosbox
 from atmosbox import __version__
+from atmosbox.errors import SettingError, UnknownSceneError
 from atmosbox.file.netcdf import read
 from atmosbox.lab import save_lab
 from atmosbox.lab.wasm_module import SCENES
@@ -18,8 +24,7 @@ from atmosbox.simulation.runner import build
 from tests.in_process import typed
 from tests.lab.test_browser import SMALL, Lab, state_of
 
-LEAST = f"#atmosbox={__version__}&scene=temperature&molecules=50&seed=7"
-"""A link up to the seed."""
+WHOLE = f"#atmosbox={__version__}&scene=temperature&molecules=50&seed=7&turns=3:temperature:60&frames=9&end"
 TURNED = {
     "temperature": ({}, 90, {"temperature": (-200.0, 500.0)}),
     "lifting-dry": ({"molecules": 100, "ascent": 40}, 60, {"altitude": (0.0, 9.0)}),
@@ -49,10 +54,10 @@ def lab(usual_tab, tmp_path):
     """A function that opens the page of a scene, at a link."""
     opened = []
 
-    def show(scene, settings, link=""):
+    def show(scene, settings, link="", *, others=False):
         path = tmp_path / f"{scene}.html"
         if not path.exists():
-            save_lab(prepare(scene, SCENES[scene] | settings, engine="exact"), path, others=False)
+            save_lab(prepare(scene, SCENES[scene] | settings, engine="exact"), path, others=others)
         opened.append(Lab(usual_tab, path.as_uri() + link))
         return opened[-1]
 
@@ -63,19 +68,22 @@ def lab(usual_tab, tmp_path):
 
 def link_of(shown):
     """Return the link of the run in a page."""
-    shown.page.evaluate("delete document.body.dataset.link")
-    shown.ask(type="link")
-    return shown.page.wait_for_selector("body[data-link]").get_attribute("data-link")
+    shown.page.click("#link")
+    text = shown.page.input_value("#linked")
+    shown.page.keyboard.press("Escape")
+    command, link = text.split("\n")  # for a page that was opened from a file
+    assert shlex.split(command) == ["atmosbox", "run", "--replay", link]
+    return link
 
 
-def end_of(link):
+def end_of(link, least=100):
     """Return the SHA-256 of the state after the run of a link in Python."""
     prepared = replayed(link)
     setup = build(prepared)
     recording = Recording(prepared, setup, {})
     while recording.frames < prepared.frames(setup):
         recording.advance(lambda now: None)
-    assert setup.parcel.contacts > 100
+    assert setup.parcel.contacts > least
     return state_of(setup.parcel)
 
 
@@ -141,3 +149,94 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
     for command in ("check", "plot"):
         assert typed(command, "run.nc").exit_code == 0
     assert typed("run", "--from", "run.nc", "--dry-run").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("part", "wrong", "sentence"),
+    [
+        (WHOLE, "", "is no link of a run, or only a part of one: copy the link again from the page, as a whole"),
+        ("&end", "", "is no link of a run, or only a part"),
+        ("&end", "&end&x=1", "is no link of a run"),
+        (__version__, "9.8", f"is of atmosbox 9.8, and this is {__version__}, whose numbers may differ: type pip"),
+        ("=temperature", "=nowhere", "is for a scene that there is not, nowhere: type atmosbox list."),
+        ("=temperature", "=..%2Fown.py", "is for a scene of your own, whose file must be typed, ../own.py: type"),
+        ("molecules=50", "molecules=0", "molecules = 0 is below the lowest allowed"),
+        ("molecules=50", "colour=5", "colour = 5 is not a setting of this scene: give one of molecules"),
+        ("molecules=50", "molecules=50&molecules=60", "has a setting twice"),
+        ("=temperature&molecules=50", "=lifting-sounding&sounding=%2Fetc%2Fpasswd", "names a file, sounding = /etc"),
+        ("3:temperature", "3:wind", "turns the knob wind, which the scene does not have (it has temperature): copy"),
+        (":60", ":501", "turns temperature to 501, outside its range of -200 to 500 degC"),
+        (":60", ":nan", "has turns of knobs that cannot be read"),
+        (":60", ":60,2:temperature:50", "has turns of knobs that cannot be read"),  # backwards
+        (":60", ":60" + ",3:temperature:60" * 5_000, "has turns of knobs that cannot be read"),  # too many
+        (":60", ":60" + ",3:temperature:60" * 20_000, "is no link of a run"),
+        ("frames=9", "frames=1000001", "is of more than 1000000 frames"),
+    ],
+)  # fmt: skip
+def test_a_link_that_cannot_be_run_is_refused_in_a_sentence_with_what_helps(part, wrong, sentence):
+    assert part in WHOLE
+    ended = typed("run", "--replay", WHOLE.replace(part, wrong, 1), "--out", "never.nc")
+    assert (ended.exit_code, ended.stderr.count("\n")) == (2, 1)
+    assert sentence in ended.stderr
+
+
+def changed(place, piece):
+    """Return a link of which one piece is another text."""
+    pieces = re.split(r"([#&=:,])", WHOLE)
+    return "".join([*pieces[:place], piece, *pieces[place + 1 :]])
+
+
+pieces = st.text(max_size=9) | st.sampled_from(
+    ["", "&", "%00", "%FF", "-1", "1e999", "9" * 400, "start", "seed", "a=b"]
+)
+
+
+@given(st.text() | st.builds(changed, st.integers(0, 34), pieces))
+def test_any_text_is_a_link_or_refused(text):
+    with contextlib.suppress(SettingError, UnknownSceneError):
+        assert replayed(text).replay.link.startswith("#atmosbox=")
+
+
+def test_a_link_excludes_settings_of_its_own():
+    for words in (["seed", "3"], ["set", "molecules=60"], ["engine", "dsmc"]):
+        ended = typed("run", "--replay", WHOLE, f"--{words[0]}", words[1])
+        assert (ended.exit_code, "cannot change a run that is replayed: leave it out" in ended.stderr) == (2, True)
+    with pytest.raises(SettingError, match="molecules cannot change a run that is replayed"):
+        atmosbox.run(replay=WHOLE, molecules=60)
+    with pytest.raises(UnknownSceneError, match="No scene is given"):
+        atmosbox.run()
+
+
+def test_a_page_opens_the_links_of_its_starts_and_refuses_others_in_a_sentence(lab):
+    shown = lab("elastic-collisions", {"molecules": 10}, others=True)
+    first = shown.digest()
+    for name, value in (("molecules", "5"), ("seed", "3")):
+        shown.ask(type="set", name=name, value=value)
+        shown.ask(type="frames", value=20)
+        link, state = link_of(shown), shown.digest()
+        assert end_of(link, least=5) == state
+        shown.page.goto(shown.page.url.partition("#")[0] + link)  # which opens the page anew
+        shown.page.wait_for_selector("body[data-ready]")
+        shown.ask(type="frames", value=20)
+        assert shown.digest() == state
+    for part, wrong, sentence in (
+        ("&end", "&en", "This link is damaged"),
+        ("=", "=9.", f"This link is of atmosbox 9.{__version__}"),
+        ("elastic-collisions", "mountains", "This link is for the scene mountains: open it in the page that"),
+        ("seed=3", "seed=99", "This page has no box with the settings of the link: type atmosbox run --replay"),
+        ("&frames", "&turns=0:heat:3&frames", "heat = 3 cannot be turned in frame 0"),
+    ):  # fmt: skip
+        shown.page.goto(shown.page.url.partition("#")[0] + link.replace(part, wrong, 1))
+        assert sentence in shown.note()
+        shown.page.locator("#notes button").click()
+    assert shown.digest() != first  # the box of the last link, without its turn
+
+
+def test_a_page_inside_of_another_has_no_header_and_tells_its_height(lab, tmp_path):
+    page = lab("elastic-collisions", {"molecules": 10}).page
+    hears = "addEventListener('message', ({ data }) => { document.body.dataset.told = data.height; })"
+    frame = '<iframe src="elastic-collisions.html?embed" width="1000" height="300"></iframe>'
+    (tmp_path / "course.html").write_text(f"<body><script>{hears}</script>{frame}", encoding="utf-8")
+    page.goto((tmp_path / "course.html").as_uri())
+    assert 500 < float(page.wait_for_selector("body[data-told]").get_attribute("data-told")) < 800
+    assert not page.frames[1].locator("header").is_visible()

@@ -18,7 +18,6 @@ export class Engine {
       else if (data.type === "file") save(data.name, data.text);
       else if (data.type === "plan") this.#plan(data.settings);
       else if (data.type === "digest") document.body.dataset.digest = data.sha256;
-      else if (data.type === "link") document.body.dataset.link = data.link;
       else hear(data);
     };
     this.worker.onerror = ({ message }) => hear({ type: "note", level: "error", text: message });

@@ -11,6 +11,7 @@ import { Graphs } from "./graphs.js";
 import { listen } from "./keys.js";
 import { showLegend } from "./legend.js";
 import { Lesson } from "./lesson.js";
+import { Link, embed } from "./link.js";
 import { note } from "./notes.js";
 import { Player } from "./player.js";
 import { Sheet } from "./sheet.js";
@@ -27,6 +28,7 @@ class Lab {
     this.engine = new Engine({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer) });
     const say = (told) => this.engine.say(told);
     this.player = new Player(find("transport"), say);
+    this.link = new Link(say);
     this.lesson = new Lesson(find("lesson"), say);
     this.gauges = new Gauges(find("gauges"), find("voice"));
     this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }),
@@ -41,6 +43,7 @@ class Lab {
     else if (told.type === "arrays") this.numbers?.replace(told.values);
     else if (told.type === "wind") this.stage?.blow(told);
     else if (told.type === "state") this.state(told);
+    else if (told.type === "link") this.link.show(told.link);
     else if (told.type === "controls") this.knobs(told.controls);
     else if (told.type === "note") {
       note(find("notes"), told);
@@ -153,6 +156,7 @@ class Lab {
 
 export function begin() {
   spell();
+  embed();
   const lab = new Lab();
   const { player } = lab;
   listen({
