@@ -50,6 +50,7 @@ _CROSSINGS = 4.0
 _WHOLE = 60.0
 _SOON = 30.0
 """Least time that the usual pace takes for the run of air that turns over [s], so that rolls are soon seen."""
+_TIME = "elapsed_time"
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _SLOWEST = 0.15
 """Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
@@ -107,7 +108,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
-            "lesson": _lesson(prepared, readings),
+            "lesson": _lesson(prepared, readings, setup.time_unit),
         },
         "base": BASE,
         "size": memory.size,
@@ -240,12 +241,19 @@ def _readings(box: LabBox) -> list[tuple[str, int, float]]:
     return [(name, int(place), float(factor)) for name, place, factor in found]
 
 
-def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[str, Any]:
-    """Return the challenges of the scene that can be met in the page; presets are left out."""
-    names = {name for name, _, _ in readings}
-    told = lesson_of(prepared.module).challenges
-    met = [each for each in told if names.issuperset(goal["name"] for goal in each["reach"])]
-    return {"presets": [], "challenges": met}
+def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]], time_unit: str) -> dict[str, Any]:
+    """Return question and task of the scene, without a task whose variables the page does not measure; no presets."""
+    lesson = lesson_of(prepared.module)
+    task = lesson.task
+    if task is None or not {name for name, _, _ in readings}.issuperset(goal["name"] for goal in task["reach"]):
+        return {"presets": [], "predict": lesson.predict, "task": None}
+    units = {_TIME: _SECONDS[time_unit]}  # all other variables of the page are in SI
+    scaled = [(goal, units.get(goal["name"], 1.0)) for goal in task["reach"]]
+    reach = [
+        goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
+        for goal, by in scaled
+    ]
+    return {"presets": [], "predict": lesson.predict, "task": {**task, "reach": reach}}
 
 
 def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
+from atmosbox.page.lesson import lesson_of
+from atmosbox.page.word import card_of
 from atmosbox.scene.conversion import phrase, to_si
 from atmosbox.scene.instruments import Environment, wall_laws
 from atmosbox.scene.panels import without_headlines
@@ -85,7 +87,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
     made = stage(
         scene=prepared.scene,
         title=str(getattr(module, "title", prepared.scene)),
-        story=(module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
+        story=lesson_of(module).story or (module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
         facts=list(setup.facts.items()),
         settings=[(p.name, _said(getattr(settings, p.name), p.unit)) for p in settings.describe()],
         version=__version__,
@@ -112,6 +114,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         counted=counted,
     )
     way = _planned_ascent(setup)
+    made.record["card"] = card_of(module.__doc__ or "")
     for record in made.record["panels"]:
         record["planned"] = _points(record, way)
     return made, fast * scale.velocity / math.sqrt(scale.temperature)

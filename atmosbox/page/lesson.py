@@ -1,18 +1,28 @@
-"""What a scene offers a class besides its knobs: named settings to try, and challenges.
+"""What a scene offers a class: its story, a question to predict, a task, and named settings to try.
 
 They are read from a file beside the scene, ``my_scene.live.toml``, which contains data only and no code. ::
+
+    story = "Air that rises expands and cools. By how much does not depend on where it began."
+
+    [predict]
+    ask = "Lifted to half the pressure, air of 15 degC cools by ..."
+    choices = ["5 K", "50 K"]
+    right = 2
+    why = "T ~ p^(2/7): 50 K."
+
+    [task]
+    ask = "Keep the parcel at 700 hPa."
+    hint = "It is at 3 km."
+    reach = {parcel_pressure = ["700 hPa", "10 hPa"]}
+    frames = 8
 
     [[preset]]
     title = "Polar night"
     set = {temperature = "-40 degC"}
 
-    [[challenge]]
-    ask = "Reach 300 hPa at -48 degC. Which start does that need?"
-    hint = "A dry parcel cools as T ~ p^(2/7)."
-    reach = {parcel_pressure = ["300 hPa", "4 hPa"], parcel_temperature = ["-48 degC", "1.5 K"]}
-
-A preset begins the box again with its settings, and those of the page for the rest. A challenge is met when each
-variable is within the given distance of its value.
+A task is done when in both halves of so many frames the mean of each variable is within the given distance of its
+value: what only passes the value is not there. A preset begins the box again with its settings, and those of the page
+for the rest.
 """
 
 from __future__ import annotations
@@ -31,7 +41,14 @@ from atmosbox.scene.conversion import converted, from_si, number_and_unit
 __all__ = ["Lesson", "Preset", "lesson_of"]
 
 SUFFIX = ".live.toml"
-_KNOWN = {"preset": {"title", "set"}, "challenge": {"ask", "hint", "reach"}}
+_KNOWN = {
+    "preset": {"title", "set"},
+    "predict": {"ask", "choices", "right", "why"},
+    "task": {"ask", "hint", "reach", "frames"},
+}
+
+
+_COUNT = {"unit": "", "factor": 1.0, "offset": 0.0}
 
 
 @dataclass(frozen=True)
@@ -56,14 +73,18 @@ class Lesson:
 
     Parameters
     ----------
+    story
+        Two sentences on what it shows.
+    predict, task
+        As data for the page: the question with its choices, the task with the values to reach and their tolerances.
     presets
         Settings to try.
-    challenges
-        As data for the page: the question, a hint, and the values to reach with their tolerances.
     """
 
+    story: str = ""
+    predict: Mapping[str, Any] | None = None
+    task: Mapping[str, Any] | None = None
     presets: tuple[Preset, ...] = ()
-    challenges: tuple[dict[str, Any], ...] = ()
 
 
 def lesson_of(module: ModuleType) -> Lesson:
@@ -84,8 +105,8 @@ def lesson_of(module: ModuleType) -> Lesson:
     Examples
     --------
     >>> from atmosbox import scenarios
-    >>> len(lesson_of(scenarios.load("lifting-dry")).challenges)
-    2
+    >>> lesson_of(scenarios.load("lifting-dry")).task["frames"]
+    8
     """
     path = Path(str(getattr(module, "__file__", ""))).with_suffix(SUFFIX)
     if not path.is_file():
@@ -96,37 +117,53 @@ def lesson_of(module: ModuleType) -> Lesson:
         raise FileError(f"What a class may try cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
-    unknown = sorted(set(told) - set(_KNOWN))
+    unknown = sorted(set(told) - {"story", *_KNOWN})
     if unknown:
-        raise ConfigError(f"{path}: {unknown[0]} is unknown: give preset or challenge.")
-    presets = [Preset(str(each["title"]), dict(each["set"])) for each in _entries(path, told, "preset")]
-    return Lesson(tuple(presets), tuple(_challenge(path, each) for each in _entries(path, told, "challenge")))
+        raise ConfigError(f"{path}: {unknown[0]} is unknown: give story, predict, task or preset.")
+    presets = [
+        Preset(str(each["title"]), dict(each["set"])) for each in _entries(path, told.get("preset", []), "preset")
+    ]
+    questions = _entries(path, [told[name] for name in ("predict",) if name in told], "predict")
+    for each in questions:
+        if not 1 <= each["right"] <= len(each["choices"]):
+            raise ConfigError(
+                f"{path}: right of predict must be the number of a choice, from 1 to {len(each['choices'])}."
+            )
+    tasks = _entries(path, [told[name] for name in ("task",) if name in told], "task")
+    return Lesson(
+        str(told.get("story", "")).strip(),
+        next(iter(questions), None),
+        next((_task(path, each) for each in tasks), None),
+        tuple(presets),
+    )
 
 
-def _entries(path: Path, told: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
+def _entries(path: Path, entries: Any, kind: str) -> list[dict[str, Any]]:
     """Return the entries of a kind; refuse one that lacks something or has something else."""
-    entries = told.get(kind, [])
     for number, entry in enumerate(entries if isinstance(entries, list) else [None], 1):
         if not isinstance(entry, dict) or set(entry) != _KNOWN[kind]:
             wanted = ", ".join(sorted(_KNOWN[kind]))
-            raise ConfigError(f"{path}: {kind} {number} must have {wanted}, and nothing else: write [[{kind}]].")
+            raise ConfigError(f"{path}: {kind} {number} must have {wanted}, and nothing else.")
     return list(entries)
 
 
-def _challenge(path: Path, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a challenge, with its values in SI and the conversion to the units in which they were given."""
+def _task(path: Path, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a task, with its values in SI and the conversion to the units in which they were given."""
     goals = []
     for name, wanted in entry["reach"].items():
         try:
             units = variable(name).units or "1"
             (value, unit), (width, of_width) = (number_and_unit(each) for each in wanted)
+            if not unit:  # a count
+                goals.append({"name": name, "target": float(value), "within": float(width), **_COUNT})
+                continue
             target, within = converted(float(value), unit, units), converted(float(width), of_width, units)
         except (KeyError, TypeError, ValueError) as error:
             raise ConfigError(
-                f"{path}: {name} of a challenge cannot be read ({error}): "
+                f"{path}: {name} of a task cannot be read ({error}): "
                 'give a variable of the file, and two quantities as in ["300 hPa", "3 hPa"].'
             ) from error
         zero = from_si(0.0, unit)
         way = {"unit": unit, "factor": from_si(1.0, unit) - zero, "offset": zero}
         goals.append({"name": name, "target": target, "within": within, **way})
-    return {"ask": str(entry["ask"]), "hint": str(entry["hint"]), "reach": goals}
+    return {**entry, "reach": goals}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +16,39 @@ from atmosbox.page.page_box import length_text
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["changed", "footer_of", "notes", "settings_of", "story_of"]
+__all__ = ["card_of", "changed", "footer_of", "notes", "settings_of", "story_of"]
 
 _FAR = 0.15  # share of the box; if molecules fly farther between two frames, the page says so
 _NEAR = 0.03  # share of the box that molecules fly between two frames of a run that shows their collisions
+_PARTS = {"Modelled": "modelled", "Prescribed": "prescribed", "Left out": "left_out", "Exaggerated": "exaggerated"}
+"""The parts of a model card, as its docstring and as the page name them."""
+
+
+def card_of(text: str) -> dict[str, str]:
+    """Return what the docstring of a scene says of its model, in parts.
+
+    Parameters
+    ----------
+    text : str
+        The docstring.
+
+    Returns
+    -------
+    dict of str
+        Of ``modelled``, ``prescribed``, ``left_out`` and ``exaggerated`` those that there are.
+
+    Examples
+    --------
+    >>> card_of("Warmth. Modelled: spheres. Left out: rain, wind.")
+    {'modelled': 'Spheres.', 'left_out': 'Rain, wind.'}
+    """
+    card = {}
+    for paragraph in text.strip().split("\n\n"):
+        _, *parts = re.split(rf"\b({'|'.join(_PARTS)})(?:: | (?=are ))", " ".join(paragraph.split()))
+        for name, words in zip(parts[::2], parts[1::2], strict=True):
+            said = words.removeprefix("are ").strip()
+            card[_PARTS[name]] = said[:1].upper() + said[1:]
+    return card
 
 
 def story_of(dataset: xr.Dataset) -> str:

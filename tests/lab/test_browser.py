@@ -521,6 +521,48 @@ def test_a_box_that_runs_for_long_takes_no_more_memory(lab):
     assert "# every 8th frame" in about
 
 
+TASKS = {
+    "temperature": ({}, {"temperature": 323}, 300),
+}
+"""For each scene the settings, the knobs to turn after 10 frames, and the frames after which its task is done."""
+
+
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=() if name in ("temperature",) else pytest.mark.nightly) for name in TASKS]
+)
+def test_a_task_is_done_with_the_controls_of_the_page_and_the_page_says_so(lab, scene):
+    settings, turns, frames = TASKS[scene]
+    shown = lab(scene, settings, others="presets" in turns)
+    page = shown.page
+    shown.ask(type="frames", value=10)
+    assert page.locator(".task.reached").count() == 0
+    for name, value in turns.items():
+        if name == "presets":
+            page.locator("#presets").select_option(label=value)
+        else:
+            page.locator(f"input[name={name}] + input").fill(str(value))
+            page.locator(f"input[name={name}] + input").press("Enter")
+    shown.ask(type="frames", value=frames)
+    page.locator(".task.reached").wait_for(timeout=120_000)
+    assert page.locator(".task .done").inner_text().startswith("Reached: ")
+
+
+def test_a_question_is_answered_in_the_language_that_is_chosen_and_the_box_goes_on(lab):
+    shown = lab("temperature", {"molecules": 50})
+    page = shown.page
+    shown.ask(type="frames", value=30)
+    before = shown.digest()
+    page.get_by_role("button", name="doubles").click()
+    assert page.locator(".predict .why").inner_text().startswith("No. Pressure is in proportion")
+    page.select_option("#language", "de")
+    shown.until(lambda: page.locator(".predict .why").inner_text().startswith("Nein. Der Druck ist proportional"))
+    assert page.get_by_role("slider", name="Temperatur der Wände").count() == 1
+    assert page.locator("#play").get_attribute("aria-label") == "abspielen"
+    assert shown.digest() == before
+    assert len(shown.table()[1]) == 30
+    page.select_option("#language", "en")
+
+
 @pytest.mark.nightly
 def test_what_is_measured_can_be_heard(lab):
     page = lab("temperature", {"molecules": 50}).page

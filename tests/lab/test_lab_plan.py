@@ -8,7 +8,8 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
-from atmosbox.lab.lab_start import lab_starts, served_start
+from atmosbox.lab.lab_start import served_start
+from atmosbox.lab.wasm_module import SCENES
 from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import build, prepare
@@ -67,28 +68,31 @@ def test_theory_that_changes_with_time_goes_on_as_theory_does():
     assert {f"left_gas_share_{name}_theory" for name in MOMENTS} <= set(rest["curves"])
 
 
-def met_in(scene, values):
-    """Return which challenges of a scene are met in a minute at the usual pace, from a start with these settings."""
-    prepared = prepare(scene, values)
-    setup, rate = build(prepared), lab_plan(prepared)[0]["rate"]
-    recording = Recording(prepared, setup, {})
-    while recording.frames < setup.frames and setup.parcel.time < 60.0 * rate:
-        recording.advance(lambda passed: None)
-    found, met = recording.dataset("lab", settle=0, judged=False)[0], set()
-    for challenge in lesson_of(prepared.module).challenges:
-        near = [np.abs(found[goal["name"]].values - goal["target"]) <= goal["within"] for goal in challenge["reach"]]
-        met |= {challenge["ask"]} if np.all(near, axis=0).any() else set()
-    return met
+def is_done(task, found):
+    """Return whether a task is done in a run, as the page judges it: both halves of so many frames are near the goal."""
+    number, near = task["frames"], True
+    for goal in task["reach"]:
+        values = np.lib.stride_tricks.sliding_window_view(found[goal["name"]].values, number)
+        halves = np.split(values, [number // 2], axis=1) if number > 1 else [values]
+        near &= np.all([np.abs(half.mean(axis=1) - goal["target"]) <= goal["within"] for half in halves], axis=0)
+    return bool(near.any())
 
 
-@pytest.mark.parametrize("scene", [name for name in scenarios.names() if lesson_of(scenarios.load(name)).challenges])
-def test_each_challenge_is_met_from_a_start_that_the_page_offers_and_not_by_waiting(scene):
-    lesson = lesson_of(scenarios.load(scene))
-    small = {"molecules": 1000, "ascent": 800}
-    offered = {start.key for start in lab_starts(prepare(scene, {"molecules": 100, "ascent": 50}), 1_500_000)[0]}
-    assert not met_in(scene, small)
-    met = [met_in(scene, small | dict(preset.values)) for preset in lesson.presets if preset.title in offered]
-    assert set().union(*met) == {challenge["ask"] for challenge in lesson.challenges}
+QUICK = ("temperature", "elastic-collisions")
+
+
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=() if name in QUICK else pytest.mark.nightly) for name in scenarios.names()]
+)
+def test_no_task_is_done_by_waiting(scene):
+    task = lesson_of(scenarios.load(scene)).task
+    for seed in range(1, 21):
+        prepared = prepare(scene, SCENES[scene] | {"seed": seed}, engine="exact")
+        setup = build(prepared)
+        recording = Recording(prepared, setup, {})
+        while recording.frames < min(setup.frames, 400):
+            recording.advance(lambda passed: None)
+        assert not is_done(task, recording.dataset("lab", settle=0, judged=False)[0]), seed
 
 
 OWN = """

@@ -88,7 +88,7 @@ def end_of(link, least=100):
 
 
 @pytest.mark.parametrize(
-    "scene", [pytest.param(name, marks=() if name == "temperature" else pytest.mark.validate) for name in TURNED]
+    "scene", [pytest.param(name, marks=() if name == "temperature" else pytest.mark.nightly) for name in TURNED]
 )
 def test_a_run_with_twenty_turns_is_the_same_to_the_last_bit_in_its_page_in_a_new_one_and_in_python(lab, scene):
     settings, frames, knobs = TURNED[scene]

@@ -51,13 +51,17 @@ def test_every_preset_of_every_scene_builds_a_box_that_differs_from_the_scenes_o
     assert seen > 20
 
 
+TASK = "[task]\nask = 'x'\nhint = 'y'\nframes = 1\nreach = {{{}}}"
+
+
 def test_a_file_that_makes_no_sense_is_refused_in_a_sentence(tmp_path):
     for text, said in [
         ("preset = 3", "preset 1 must have set, title"),
         ("[[preset]]\ntitle = 'x'", "preset 1 must have set, title"),
         ("[[tip]]\nask = 'x'", "tip is unknown"),
-        ("[[challenge]]\nask = 'x'\nhint = 'y'\nreach = {parcel_pressure = ['300 K', '1 hPa']}", "cannot be read"),
-        ("[[challenge]]\nask = 'x'\nhint = 'y'\nreach = {nonsense = ['300 K', '1 K']}", "nonsense of a challenge"),
+        (TASK.format("parcel_pressure = ['300 K', '1 hPa']"), "cannot be read"),
+        (TASK.format("nonsense = ['300 K', '1 K']"), "nonsense of a task"),
+        ("[predict]\nask = 'x'\nwhy = 'y'\nchoices = ['a', 'b']\nright = 3", "from 1 to 2"),
         ("= 3", "is not TOML"),
     ]:
         module = tmp_path / "mine.py"

@@ -43,7 +43,8 @@ def said_by_scenes():
         box = build(prepare(name, small))
         lesson = lesson_of(module)
         found |= {preset.title for preset in lesson.presets}
-        found |= {text for each in lesson.challenges for text in (each["ask"], each["hint"])}
+        found |= set(re.split(r"(?<=[.?]) ", lesson.story)) | set(lesson.predict["choices"])
+        found |= {lesson.predict[part] for part in ("ask", "why")} | {lesson.task[part] for part in ("ask", "hint")}
         made = knob_controls(box.knobs) + setting_controls(settings.describe(), settings.as_dict(), ["seed"])
         found |= {control["label"] for control in made}
     return {text.replace("\u00a0", " ") for text in found if text}

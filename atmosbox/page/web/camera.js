@@ -6,6 +6,7 @@ import { scaled } from "./figure.js";
 
 const DEGREES = Math.PI / 180;
 const MARGIN = [64, 58]; // pixels around the box, for the numbers at its edges
+const NARROW = 0.16, LOW = 200; // share of a picture that a margin may take; a picture that is lower has none [pixel]
 
 // Direction of the camera by azimuth and elevation [degree]; `closer` divides the distance from which all of the box is
 // seen.
@@ -80,7 +81,7 @@ export class Camera {
 
   resize(width, height) {
     this.eye.aspect = width / height;
-    this.free = [width, height].map((size, axis) => Math.max(1 - 2 * scaled(MARGIN[axis]) / size, 0.3));
+    this.free = [width, height].map((size, axis) => 1 - 2 * (height < scaled(LOW) ? 0.02 : Math.min(scaled(MARGIN[axis]) / size, NARROW)));
     this.eye.updateProjectionMatrix();
     if (this.place !== null) this.go(this.place);
   }

@@ -1,6 +1,6 @@
 // The text under the box: what the picture shows, how it is drawn, and the provenance of the run.
 
-import { figure, round, spelled } from "./figure.js";
+import { figure, spelled } from "./figure.js";
 import { phrase, story, word } from "./words.js";
 
 const HOTTEST = 1e6;
@@ -25,8 +25,10 @@ const named = (footer) => footer.split(" · ").map((part, place) => (place > 1 ?
 const printed = (text) => String(text).replace(/^(-?)(\d[\d.]*(?:e[+-]?\d+)?)(?: (.*))?$/, (all, sign, digits, unit) =>
   [`${sign && "−"}${digits}`, spelled(unit)].filter(Boolean).join(" "));
 
-// Show the first lines; a button opens the rest. Returns an object with which the text of a running box can be updated:
-// `follow({ walls, length, settings })` takes the values that have changed.
+const PARTS = ["modelled", "prescribed", "left_out", "exaggerated"];
+
+// Show the first lines; a button opens the rest. Returns a function that takes what has changed in a running box:
+// `{ walls, length }`.
 export function showCaption(parent, runs) {
   parent.replaceChildren();
   const text = document.createElement("div");
@@ -39,28 +41,23 @@ export function showCaption(parent, runs) {
   more.onclick = () => open(!parent.classList.contains("open"));
   open(false);
   parent.append(text, more);
-  const add = (kind, words) => {
-    const line = Object.assign(document.createElement("p"), { className: kind, textContent: words, hidden: !words });
+  const add = (kind, words, name = "") => {
+    const line = Object.assign(document.createElement("p"), { className: kind, hidden: !words });
+    if (name) line.append(Object.assign(document.createElement("b"), { textContent: `${name}: ` }));
+    line.append(words);
     text.append(line);
     return line;
   };
-  const [{ stage }] = runs;
-  add("story", story(stage.story));
+  const [{ stage }] = runs, { card } = stage;
+  if (!card) add("story", story(stage.story));
+  for (const part of PARTS) if (card?.[part]) add("card", phrase(card[part]), word(part));
   const told = (now) => [...new Set(runs.flatMap(({ stage: each, notes = [] }) =>
     [boxSentence(each, now), phrase(each.exaggeration), ...notes.map(phrase)]))].join(" ");
   const drawn = add("drawn", told());
   add("source", [...new Set(runs.map(({ footer }) => footer))].filter(Boolean).map(named).join(" | "));
-  const settings = new Map(stage.settings.map(([name, value]) => [name, printed(value)]));
-  const listed = () => [...settings].map(([name, value]) => `${name} ${value}`).join(", ");
-  const source = add("source", runs.length === 1 ? listed() : "");
-  const write = (line, words) => { if (line.textContent !== words) line.textContent = words; };
-  return {
-    follow({ settings: knobs, ...now }) {
-      for (const { name, value, unit } of knobs ?? []) {
-        const plain = name.replaceAll("_", " ");
-        if (settings.has(plain)) settings.set(plain, [round(value), spelled(unit)].filter(Boolean).join(" "));
-      }
-      write(knobs ? source : drawn, knobs ? listed() : told(now));
-    },
+  if (!card && runs.length === 1) add("source", stage.settings.map(([name, value]) => `${name} ${printed(value)}`).join(", "));
+  return (now) => {
+    const words = told(now);
+    if (drawn.textContent !== words) drawn.textContent = words;
   };
 }

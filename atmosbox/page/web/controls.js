@@ -1,17 +1,17 @@
 // The settings that may be changed while the box runs: a line for each, with its unit.
 
-import { spelled } from "./figure.js";
-import { phrase, word } from "./words.js";
+import { round, spelled } from "./figure.js";
+import { language, phrase, word } from "./words.js";
 
 const WIDE = 300; // a slider is logarithmic if its highest value is more than this many times its lowest
 const PATIENCE = 120; // ms between two values that a moving slider sends
 
-const brief = (number) => Number(Number(number).toPrecision(5));
+const brief = (number) => (Number.isInteger(number) ? number : Number(Number(number).toPrecision(4)));
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
 
 export class Controls {
-  // `set(name, value)` is called when a control is changed, `tell(text)` when what was typed is no number.
+  // `set(name, value)` is called when a control is changed, `tell(text)` when what was typed is refused.
   constructor(parent, set, tell) {
     Object.assign(this, { parent, set, tell, shown: new Map() });
   }
@@ -24,7 +24,7 @@ export class Controls {
   // Build the controls again or, if they are the same, only update their values.
   show(controls) {
     this.told = controls;
-    const names = controls.map(({ name }) => name).join();
+    const names = [language, ...controls.map(({ name }) => name)].join();
     if (names === this.names) {
       for (const control of controls) this.shown.get(control.name)?.(control.value);
       return;
@@ -32,7 +32,6 @@ export class Controls {
     this.names = names;
     this.shown.clear();
     this.parent.replaceChildren();
-    this.parent.hidden = controls.length === 0;
     const now = controls.filter(({ restarts }) => !restarts), later = controls.filter(({ restarts }) => restarts);
     if (now.length) this.parent.append(this.#group(now));
     if (later.length) {
@@ -49,7 +48,7 @@ export class Controls {
   }
 
   #line(control) {
-    const line = make("label", { className: `setting ${control.kind}`, title: control.help ?? "" });
+    const line = make("label", { className: `setting ${control.kind}` });
     line.append(make("span", { className: "name", textContent: phrase(control.label) }));
     if (control.kind === "number") this.#number(line, control);
     else if (control.kind === "switch") this.#switch(line, control);
@@ -65,12 +64,14 @@ export class Controls {
     box.setAttribute("aria-label", phrase(label));
     if (bounded) Object.assign(box, { min: low, max: high });
     box.addEventListener("keydown", ({ key }) => key === "Enter" && box.blur()); // so that keys control the player again
-    const send = (number) => Number.isFinite(number) && this.set(name, number);
+    const send = (number) => this.set(name, number);
     const slider = make("input", { type: "range", name, step: ratios ? "any" : step ?? "any" });
     box.addEventListener("change", () => {
-      if (!Number.isFinite(box.valueAsNumber)) {
+      const asked = box.valueAsNumber, outside = bounded && !(asked >= low && asked <= high);
+      if (!Number.isFinite(asked) || outside) {
         box.value = brief(this.told.find((each) => each.name === name).value);
-        this.tell(word("no_number", { name: phrase(label) }));
+        const said = { name: phrase(label), low: round(low), high: round(high), unit: spelled(unit) };
+        this.tell(word(Number.isFinite(asked) ? "out_of_range" : "no_number", said));
         return;
       }
       slider.value = place(box.valueAsNumber);

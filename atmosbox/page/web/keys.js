@@ -2,7 +2,7 @@
 
 import { word } from "./words.js";
 
-export const KEYS = [
+export const keys = () => [
   [word("space"), word("key_play")],
   ...(document.body.classList.contains("lab") ? [["→", word("on")]] : [["→  ←", word("key_step")]]),
   ["↑  ↓", word("key_pace")],

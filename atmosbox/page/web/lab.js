@@ -16,7 +16,7 @@ import { note } from "./notes.js";
 import { Player } from "./player.js";
 import { Sheet } from "./sheet.js";
 import { Stage } from "./stage.js";
-import { phrase, spell } from "./words.js";
+import { language, languages, phrase, speak, spell, story } from "./words.js";
 
 const KEPT = 240; // frames, from which the path of a molecule is drawn
 const LOOK = 200; // ms between two updates of the graphs
@@ -27,14 +27,28 @@ class Lab {
   constructor() {
     this.engine = new Engine({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer) });
     const say = (told) => this.engine.say(told);
-    this.player = new Player(find("transport"), say);
+    const tell = (text) => note(find("notes"), { text });
+    this.player = new Player(find("transport"), find("files"), say, tell);
     this.link = new Link(say);
-    this.lesson = new Lesson(find("lesson"), say);
-    this.gauges = new Gauges(find("gauges"), find("voice"));
-    this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }),
-      (text) => note(find("notes"), { text }));
+    this.lesson = new Lesson(find("lesson"), find("tries"), say);
+    this.gauges = new Gauges(find("gauges"), find("voice"), tell);
+    this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }), tell);
+    this.#languages();
     this.beat = { arrived: 0, interval: 50 };
     this.stale = false;
+  }
+
+  // The languages to choose from: the box goes on, and all that is written is written again.
+  #languages() {
+    const list = find("language");
+    list.replaceChildren(...languages.map(([value, textContent]) => Object.assign(document.createElement("option"), { value, textContent, lang: value })));
+    list.value = language;
+    list.hidden = languages.length < 2;
+    list.onchange = () => {
+      speak(list.value);
+      spell();
+      this.engine.say({ type: "greet" });
+    };
   }
 
   hear(told) {
@@ -44,7 +58,7 @@ class Lab {
     else if (told.type === "wind") this.stage?.blow(told);
     else if (told.type === "state") this.state(told);
     else if (told.type === "link") this.link.show(told.link);
-    else if (told.type === "controls") this.knobs(told.controls);
+    else if (told.type === "controls") this.controls.show(told.controls);
     else if (told.type === "note") {
       note(find("notes"), told);
       if (told.level === "error") this.controls.restore();
@@ -67,14 +81,15 @@ class Lab {
     this.graphs = new Graphs(find("graphs"), [{ stage: record, film: this.film, numbers: this.numbers }], null);
     this.sheet = new Sheet([this.stage], () => this.graphs.repaint());
     this.walls = state.walls ?? null;
-    this.lesson.offer(lesson);
-    document.body.dataset.pictured = record.panels.some(({ kind }) => kind === "atmosphere");
+    find("story").textContent = story(record.story);
+    find("panel").hidden = false;
+    this.lesson.offer(record.scene, lesson);
     const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
       record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
     this.caption = showCaption(find("caption"), [{ stage: record, footer }]);
     this.player.begin(record);
     this.state({ seed: record.seed, ...state });
-    this.knobs(controls ?? []);
+    this.controls.show(controls ?? []);
     document.body.dataset.ready = true;
     this.start(state);
   }
@@ -95,12 +110,6 @@ class Lab {
       this.walls = told.walls;
       this.stage?.warm(told.walls);
     }
-  }
-
-  // Show the values of the knobs, also in the text under the box.
-  knobs(controls) {
-    this.controls.show(controls);
-    this.caption?.follow({ settings: controls.filter(({ kind }) => kind === "number") });
   }
 
   append({ reset, time, values }) {
@@ -148,7 +157,7 @@ class Lab {
     if (this.film.frames.length) {
       this.graphs.at(this.film.end);
       find("status").textContent = this.sheet.story();
-      this.caption.follow({ walls: this.walls, length: this.film.frames.at(-1).length });
+      this.caption({ walls: this.walls, length: this.film.frames.at(-1).length });
     }
     this.lesson.judge(this.numbers);
   }

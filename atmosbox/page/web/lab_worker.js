@@ -255,7 +255,12 @@ class Box {
     else if (type === "undo") await this.undo();
     else if (type === "save") this.save();
     else if (type === "link") say({ type, link: this.link() });
-    else if (type === "watched") this.watched = message.is;
+    else if (type === "greet") { // the page was cleared, and asks for all that it showed
+      Object.assign(this.trace, { sent: 0, reset: true });
+      this.fresh = true;
+      this.greet();
+      this.tell();
+    } else if (type === "watched") this.watched = message.is;
     else if (type === "frames") {
       while (this.frame < value && !this.failed) this.pass(this.moment(), Infinity);
       this.look();

@@ -1,33 +1,39 @@
-// Offers for a class: named settings, undo, and challenges.
+// What a scene asks of a class: a question to predict, and a task; besides, named settings to try, and undo.
 
 import { figure, spelled } from "./figure.js";
-import { numbers, phrase, word } from "./words.js";
+import { language, numbers, phrase, word } from "./words.js";
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
+const written = (text) => numbers(phrase(text));
+
+// The mean of the last frames before a place, and whether it is near the goal in both halves of them: what only passes
+// the goal on its way is not there.
+function stands({ target, within }, series, end, frames) {
+  const mean = (from, to) => series.slice(from, to).reduce((sum, value) => sum + value, 0) / (to - from);
+  const middle = end - Math.floor(frames / 2), begin = end - frames;
+  const halves = frames > 1 ? [mean(begin, middle), mean(middle, end)] : [series[end - 1]];
+  return { value: mean(begin, end), near: halves.every((each) => Math.abs(each - target) <= within) };
+}
 
 export class Lesson {
-  // `say(message)` sends a message to the box.
-  constructor(parent, say) {
-    Object.assign(this, { parent, say, challenge: null });
+  // `tries` gets undo and the named settings, `parent` question and task; `say(message)` sends a message to the box.
+  constructor(parent, tries, say) {
+    Object.assign(this, { parent, tries, say, answer: null, told: "", scene: "" });
   }
 
-  // Show the presets and the challenges of the scene.
-  offer({ presets = [], challenges = [] } = {}) {
-    const told = JSON.stringify([presets, challenges]);
-    if (told === this.told) return;
+  // Show what a scene offers. A new box begins: its task has not been done yet.
+  offer(scene, { presets = [], predict = null, task = null } = {}) {
+    if (scene !== this.scene) this.answer = null;
+    Object.assign(this, { scene, task, reached: false, judged: 0 });
+    const told = JSON.stringify([language, presets, predict, task]);
+    if (told !== this.told) {
+      this.back = make("button", { type: "button", id: "undo", textContent: `↶ ${word("undo")}`, title: word("undo_title"), onclick: () => this.undo() });
+      this.tries.replaceChildren(this.back, ...presets.length ? [this.#presets(presets)] : []);
+      this.parent.replaceChildren(...predict ? [this.#question(predict)] : [], ...task ? [this.#card(task)] : []);
+      this.parent.hidden = !predict && !task;
+    }
     this.told = told;
-    this.challenge = null;
-    this.parent.replaceChildren();
-    const bar = make("div", { className: "tries" });
-    if (presets.length) bar.append(this.#presets(presets));
-    challenges.forEach((challenge, index) => bar.append(this.#opener(challenge, index, challenges.length)));
-    this.back = make("button", { type: "button", id: "undo", textContent: `↶ ${word("undo")}`, title: word("undo_title") });
-    this.back.onclick = () => this.undo();
-    bar.append(this.back);
-    this.card = make("section", { className: "challenge", hidden: true });
-    this.card.setAttribute("aria-label", word("challenge"));
-    this.parent.append(bar, this.card);
-    this.parent.hidden = false;
+    if (task) this.#show([]);
   }
 
   undo() {
@@ -36,7 +42,7 @@ export class Lesson {
 
   #presets(presets) {
     const list = make("select", { id: "presets", title: word("preset") });
-    list.setAttribute("aria-label", word("preset"));
+    list.setAttribute("aria-label", word("presets"));
     list.append(make("option", { value: "", textContent: `${word("presets")} …` }));
     presets.forEach((title, number) => list.append(make("option", { value: number, textContent: phrase(title) })));
     list.onchange = () => {
@@ -46,26 +52,45 @@ export class Lesson {
     return list;
   }
 
-  #opener(challenge, index, count) {
-    const text = count > 1 ? `${word("challenge")} ${index + 1}` : word("challenge");
-    const button = make("button", { type: "button", className: "opener", textContent: text });
-    button.setAttribute("aria-pressed", false);
-    button.onclick = () => {
-      this.challenge = this.challenge === challenge ? null : challenge;
-      for (const each of this.parent.querySelectorAll(".opener")) each.setAttribute("aria-pressed", each === button && this.challenge !== null);
-      this.#open();
-    };
-    return button;
+  #section(kind, text) {
+    const section = make("section", { className: kind });
+    section.setAttribute("aria-label", word(kind));
+    const ask = make("p", { className: "ask" });
+    ask.append(make("b", { textContent: word(kind) }), ` ${written(text)}`);
+    section.append(ask);
+    return section;
   }
 
-  #open() {
-    this.card.hidden = this.challenge === null;
-    if (this.challenge === null) return;
-    const hint = make("details");
-    hint.append(make("summary", { textContent: word("hint") }), make("p", { textContent: phrase(this.challenge.hint) }));
-    this.verdict = make("p", { className: "verdict" });
-    this.verdict.setAttribute("role", "status");
-    this.card.replaceChildren(make("p", { className: "ask", textContent: numbers(phrase(this.challenge.ask)) }), this.verdict, hint);
+  // The question: its answer is told once the reader has chosen one.
+  #question({ ask, choices, right, why }) {
+    const section = this.#section("predict", ask), row = make("div", { className: "choices" });
+    const said = make("p", { className: "why" });
+    said.setAttribute("role", "status");
+    const answer = (place) => {
+      this.answer = place;
+      row.replaceChildren(...choices.map((text, number) => {
+        const button = make("button", { type: "button", textContent: written(text), onclick: () => answer(number) });
+        button.setAttribute("aria-pressed", number === place);
+        if (place !== null && number === right - 1) button.classList.add("right");
+        return button;
+      }));
+      said.textContent = place === null ? "" : `${word(place === right - 1 ? "predicted" : "not_predicted")} ${written(why)}`;
+    };
+    section.append(row, said);
+    answer(this.answer);
+    return section;
+  }
+
+  #card({ ask, hint }) {
+    const section = this.#section("task", ask), tip = make("details");
+    tip.append(make("summary", { textContent: word("hint") }), make("p", { textContent: written(hint) }));
+    this.now = make("span", { className: "now" });
+    this.done = make("span", { className: "done" });
+    this.done.setAttribute("role", "status");
+    const verdict = make("p", { className: "verdict" });
+    verdict.append(this.done, this.now);
+    section.append(verdict, tip);
+    return section;
   }
 
   // Update the undo button: whether any change can be undone.
@@ -73,19 +98,27 @@ export class Lesson {
     if (this.back && undo !== undefined) this.back.disabled = !undo;
   }
 
-  // Check whether the measurements have met the challenge at any time.
+  #show(values) {
+    const { reach } = this.task;
+    const told = values.map((value, goal) => `${figure(value * reach[goal].factor + reach[goal].offset)} ${spelled(reach[goal].unit)}`.trim()).join(", ");
+    const text = (key) => (told ? word(key, { values: told }) : "");
+    this.done.textContent = this.reached ? text("reached") : "";
+    this.now.textContent = this.reached ? "" : text("not_yet");
+    this.now.closest(".task").classList.toggle("reached", this.reached);
+  }
+
+  // Check whether the measurements have come to the goal of the task.
   judge(values) {
-    if (this.challenge === null) return;
-    const { reach } = this.challenge;
+    if (!this.task || this.reached) return;
+    const { reach, frames } = this.task;
     const series = reach.map(({ name }) => values.get(name) ?? []);
     const count = Math.min(...series.map(({ length }) => length));
-    const met = (place) => reach.every(({ target, within }, goal) => Math.abs(series[goal][place] - target) <= within);
-    const first = Array.from({ length: count }, (_, place) => place).find(met);
-    const place = first ?? count - 1;
-    const told = place < 0 ? "" : reach.map(({ unit, factor, offset }, goal) =>
-      `${figure(series[goal][place] * factor + offset)} ${spelled(unit)}`).join(", ");
-    const text = told ? word(first === undefined ? "not_yet" : "reached", { values: told }) : "";
-    if (this.verdict.textContent !== text) this.verdict.textContent = text;
-    this.card.classList.toggle("reached", first !== undefined);
+    if (count < this.judged) this.judged = 0;
+    for (let end = Math.max(this.judged + 1, frames); end <= count && !this.reached; end += 1) {
+      const found = reach.map((goal, place) => stands(goal, series[place], end, frames));
+      this.reached = found.every(({ near }) => near);
+      if (this.reached || end === count) this.#show(found.map(({ value }) => value));
+    }
+    this.judged = count;
   }
 }

@@ -1,4 +1,4 @@
-// Messages for the reader: a sentence that disappears after a while, or stays if something was refused.
+// Messages for the reader: a sentence that disappears after a while.
 
 import { phrase, word } from "./words.js";
 
@@ -15,6 +15,6 @@ export function note(parent, { level = "info", text }) {
   close.onclick = () => card.remove();
   card.append(sign, words, close);
   parent.append(card);
-  if (level !== "error") setTimeout(() => card.remove(), READING);
+  setTimeout(() => card.remove(), READING);
   while (parent.children.length > 4) parent.firstElementChild.remove();
 }

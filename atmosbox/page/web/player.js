@@ -2,24 +2,26 @@
 
 import { figure, withUnit } from "./figure.js";
 import { icon } from "./transport.js";
-import { phrase, word } from "./words.js";
+import { phrase, spell, word } from "./words.js";
 
 const SLOWEST = 0.25, FASTEST = 16;
 
 export class Player {
-  // `say(message)` sends a message to the engine.
-  constructor(parent, say) {
-    Object.assign(this, { say, state: { playing: false, pace: 1 }, unit: "", particle: "molecule" });
+  // `files` gets the field of the seed and Save; `say(message)` sends a message to the engine, `tell(text)` one to the reader.
+  constructor(parent, files, say, tell) {
+    Object.assign(this, { say, tell, state: { playing: false, pace: 1 }, unit: "", particle: "molecule" });
     parent.innerHTML = `
-      <button type="button" id="play" class="main" title="${word("play_title")}"></button>
-      <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
-      <span class="group"><button type="button" id="slower" title="${word("slower_title")}" aria-label="${word("slower")}">−</button>
-      <output id="pace"></output><button type="button" id="faster" title="${word("faster_title")}" aria-label="${word("faster")}">+</button></span>
+      <button type="button" id="play" class="main" data-word-title="play_title"></button>
+      <button type="button" id="on" data-word-title="on_title" data-word-label="on">${icon("on")}</button>
+      <span class="group"><button type="button" id="slower" data-word-title="slower_title" data-word-label="slower">−</button>
+      <output id="pace" aria-live="off"></output><button type="button" id="faster" data-word-title="faster_title" data-word-label="faster">+</button></span>
       <output id="time" aria-live="off"></output><output id="vitals" aria-live="off"></output>
-      <span class="group"><button type="button" id="reset" title="${word("again_title")}">${word("again")}</button></span>
-      <label class="seed" title="${word("seed_title")}">${word("seed")} <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
-      <button type="button" id="save" title="${word("save_title")}">${word("save")}</button>`;
-    this.part = (name) => parent.querySelector(`#${name}`);
+      <button type="button" id="reset" data-word-title="again_title" data-word="again"></button>`;
+    files.innerHTML = `<label class="seed" data-word-title="seed_title"><span data-word="seed"></span>
+      <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
+      <button type="button" id="save" data-word-title="save_title" data-word="save"></button>`;
+    spell();
+    this.part = (name) => document.getElementById(name);
     this.part("play").onclick = () => this.toggle();
     this.part("on").onclick = () => this.step();
     this.part("slower").onclick = () => this.accelerate(0.5);
@@ -38,8 +40,11 @@ export class Player {
   }
 
   reset() {
-    const seed = this.part("seed").valueAsNumber;
-    this.say({ type: "reset", seed: Number.isInteger(seed) && seed >= 0 ? seed : null });
+    const field = this.part("seed"), seed = Number(field.value);
+    if (this.state.seeded && (field.value === "" || !Number.isSafeInteger(seed) || seed < 0)) {
+      field.value = this.state.seed;
+      this.tell(word("no_seed", { number: Number.MAX_SAFE_INTEGER }));
+    } else this.say({ type: "reset", seed: this.state.seeded ? seed : null });
   }
 
   accelerate(factor) {

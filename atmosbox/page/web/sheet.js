@@ -4,7 +4,7 @@ import { theme } from "./colour.js";
 import { PLACES } from "./camera.js";
 import { showLegend } from "./legend.js";
 import { figure } from "./figure.js";
-import { KEYS } from "./keys.js";
+import { keys } from "./keys.js";
 import { phrase, word } from "./words.js";
 
 const find = (name) => document.getElementById(name);
@@ -27,6 +27,7 @@ export class Sheet {
     find("theme").onclick = () => this.turnTheme();
     find("help").onclick = () => this.help();
     find("trace").onclick = () => this.trace();
+    find("menu").onclick = () => find("menu").setAttribute("aria-expanded", find("menu").getAttribute("aria-expanded") !== "true");
     matchMedia("(prefers-color-scheme: dark)").onchange = () => this.paint();
     stages.forEach((stage) => stage.parent.addEventListener("pick", ({ detail }) => this.follow(stage, detail)));
     this.#tools();
@@ -98,7 +99,7 @@ export class Sheet {
     const dialog = find("sheet"), seeks = !document.body.classList.contains("lab");
     dialog.innerHTML = `<h2>${word("keys")}</h2><dl></dl><p>${word("mouse")}${seeks ? ` ${word("mouse_time")}` : ""}</p><p>${word("libraries")}</p>`
       + `<form method='dialog'><button>${word("close")}</button></form>`;
-    for (const [key, meaning] of KEYS.filter(([key]) => key !== "C" || this.modes.length > 1)) {
+    for (const [key, meaning] of keys().filter(([key]) => key !== "C" || this.modes.length > 1)) {
       dialog.querySelector("dl").append(
         Object.assign(document.createElement("dt"), { textContent: key }),
         Object.assign(document.createElement("dd"), { textContent: meaning }),

@@ -140,9 +140,7 @@ export class Walls {
 
   // From above, the piston is transparent.
   seenFrom(eye, height) {
-    const [x, y] = this.box.length;
-    const steep = (eye.z - height) / Math.hypot(eye.x - x / 2, eye.y - y / 2);
-    if (this.metal) this.metal.opacity = steep > 0.5 ? 0.2 : 0.92;
+    if (this.metal) this.metal.opacity = eye.z > height ? 0.2 : 0.92;
   }
 }
 

@@ -8,13 +8,30 @@ const NUMBER = /(\d)\.(\d)/g; // the decimal point of a number
 const known = (wanted) => [wanted, wanted?.slice(0, 2)].find((each) => TABLES[each]);
 
 // The language that was asked for, or the first of the browser's languages that the page has.
-export const language = (() => {
+const first = () => {
   const asked = document.documentElement.dataset.language;
   const wanted = asked && asked !== "auto" ? [asked] : navigator.languages ?? [];
   return wanted.map(known).find(Boolean) ?? "en";
-})();
+};
 
-const table = TABLES[language] ?? {}, english = TABLES.en ?? {};
+// The languages of this page with their own names.
+export const languages = Object.entries(TABLES).map(([key, { name }]) => [key, name]);
+
+const english = TABLES.en ?? {};
+export let language;
+let table, patterns;
+
+// Take a language; `spell` then writes its texts into the page.
+export function speak(wanted) {
+  language = wanted;
+  table = TABLES[language] ?? {};
+  // English sentences with gaps as regular expressions, the longest first
+  patterns = Object.entries(table.phrase ?? {}).filter(([text]) => text.includes("{}"))
+    .toSorted(([one], [other]) => other.length - one.length)
+    .map(([text, said]) => [new RegExp(`^${text.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)")}$`), said]);
+}
+
+speak(first());
 
 const filled = (text, values) => text.replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
 
@@ -23,11 +40,6 @@ export const word = (key, values = {}) => filled(table.page?.[key] ?? english.pa
 
 // A text whose numbers are written as in the language.
 export const numbers = (text) => (table.decimal && table.decimal !== "." ? text.replace(NUMBER, `$1${table.decimal}$2`) : text);
-
-// English sentences with gaps as regular expressions, the longest first.
-const patterns = Object.entries(table.phrase ?? {}).filter(([text]) => text.includes("{}"))
-  .toSorted(([one], [other]) => other.length - one.length)
-  .map(([text, said]) => [new RegExp(`^${text.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)")}$`), said]);
 
 // A text of a scene or of the program, translated if the table has it, with the numbers that it contains.
 export function phrase(text) {
@@ -43,11 +55,11 @@ export function phrase(text) {
   return text ?? "";
 }
 
-// The story of a scene; if the whole story is not translated, only its first sentence.
+// A text, sentence by sentence; if not all of them are translated, only its first sentence.
 export function story(text) {
-  const first = /^.*?[.?](?=\s|$)/.exec(text ?? "")?.[0] ?? "";
-  const said = phrase(first);
-  return said !== first && phrase(text) === text ? said : phrase(text);
+  const parts = (text ?? "").split(/(?<=[.?]) /), said = parts.map(phrase);
+  if (said.every((each, place) => each !== parts[place])) return said.join(" ");
+  return said[0] === parts[0] ? text ?? "" : said[0];
 }
 
 // Write the texts into the elements that ask for them: data-word for the content, data-word-title, data-word-label.
