@@ -479,9 +479,9 @@ def test_one_panel_alone_has_the_width_of_a_column():
     assert plot.figure(small([280.0, 290.0])).get_figwidth() == 3.5
 
 
-def test_the_title_of_the_run_stands_on_slides_only(drawings):
-    assert "Why rising air cools" in written(drawings["lifting-dry", "slides"])
-    assert "Why rising air cools" not in written(drawings["lifting-dry", "notes"])
+@pytest.mark.parametrize("theme", plot.THEMES)
+def test_the_title_of_the_run_stands_above_its_panels(drawings, theme):
+    assert "Why rising air cools" in written(drawings["lifting-dry", theme])
 
 
 def test_long_titles_notes_and_labels_are_broken_into_lines_that_fit():
@@ -610,7 +610,7 @@ def test_axes_that_run_backwards_do_so_together():
         assert axes.xaxis_inverted()
 
 
-def test_a_reference_is_broad_and_pale_under_the_theory_that_it_coincides_with(runs):
+def test_a_reference_is_broader_and_paler_under_the_theory_that_it_coincides_with(runs):
     run = runs["atmosphere"]
     panel = Panel(
         "profile",
@@ -650,7 +650,7 @@ def test_a_curve_that_goes_up_and_down_often_is_thin_and_its_legend_is_not():
     for values, is_thin in ((np.linspace(280, 290, 900), False), (rng.normal(288, 5, 900), True)):
         axes = plot.figure(small(values, panel), "slides").axes[0]
         assert (axes.lines[0].get_linewidth() < 0.7 * plot.THEMES["slides"].line) == is_thin
-        assert axes.get_legend().get_lines()[0].get_linewidth() == plot.THEMES["slides"].line
+        assert axes.get_legend().get_lines()[0].get_linewidth() >= plot.THEMES["slides"].line
 
 
 def test_the_axis_of_pressure_begins_at_1000_hpa_where_the_data_nearly_do(runs):
@@ -812,7 +812,7 @@ def test_the_footer_counts_discs_as_discs_and_one_molecule_as_one(runs):
 
 def test_a_misfit_that_rounds_to_zero_has_no_sign():
     assert caption.number(-0.04, 0.9, signed=True) == "0.0 ± 0.9"
-    assert caption.number(0.003, 2.6, signed=True) == "0.0 ± 2.6"
+    assert caption.number(0.003, 2.6, signed=True) == "0 ± 3"
     assert caption.number(-0.06, 0.9, signed=True) == "−0.1 ± 0.9"
 
 
@@ -827,7 +827,7 @@ def test_the_titles_of_scenes_are_true_of_their_settings():
 
 
 def test_numbers_have_the_digits_that_their_error_allows():
-    assert caption.number(1234.5678, 0.234) == "1234.57 ± 0.23"
+    assert caption.number(1234.5678, 0.234) == "1234.6 ± 0.2"
     assert caption.number(0.0, 0.0) == "0"
     assert caption.number(-1.5e-9, 3e-10, signed=True) == "(−1.5 ± 0.3) × 10⁻⁹"
 

@@ -111,7 +111,7 @@ def test_vapour_pressures_are_drawn_over_one_over_temperature_with_the_slope_of_
 
 def test_a_sweep_that_lacks_the_slope_is_drawn_as_any_other():
     drawing = figure(slabs(("vapor_pressure", "vapor_density")))
-    assert [axes.get_xlabel() for axes in drawing.axes] == ["", "temperature of the thermostat and at the start (K)"]
+    assert [axes.get_xlabel() for axes in drawing.axes] == ["temperature of the thermostat and at the start (K)"] * 2
 
 
 def test_molecules_in_even_ratios_stand_on_a_logarithmic_axis():

@@ -75,7 +75,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """
     look = find(theme)
     panels = panels_of(dataset)
-    heading = str(dataset.attrs.get("title", "")) if look.heading else ""
+    heading = str(dataset.attrs.get("title", ""))
     small = footer(dataset) + explanation(dataset, panels)
     readings = [reading for each in headlines(dataset, panels) for reading in each]
     height = flow_height(dataset, look)
@@ -258,7 +258,7 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         boxes = _HIGH * wide if look.grows else _HIGH_ON_SCREEN * high
         drawing = blank(look.wide, look)
         measure = TextMeasure(drawing)
-        top = put_heading(measure, str(dataset.attrs.get("title", "")) if look.heading else "", look)
+        top = put_heading(measure, str(dataset.attrs.get("title", "")), look)
         top += put_numbers(measure, readings, look, top)
         if look.grows:
             drawing.set_figheight((high + top + boxes) / 72.0)
