@@ -241,7 +241,7 @@ def test_the_answers_fit_on_two_pages_and_are_marked_as_such(answered):
     content, pages = pdf(answered)
     assert pages <= 2
     text = text_of_pdf(content)[1]
-    assert "Elastic collisions: answers" in text
+    assert "Do light or heavy discs have more energy? Answers" in text
     assert "Name:" not in text
 
 

@@ -62,13 +62,17 @@ class Ascent(NamedTuple):
 
     def part(self, chosen: NDArray[np.bool_]) -> Ascent:
         """Return the path in some of the frames only."""
-        return Ascent(*(values[chosen] for values in self[:-1]), self.base)
+        parts: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self._fields[:-1]}
+        return self._replace(**parts)
 
     def from_ground(self, temperature: float, pressure: float) -> Ascent:
         """Return the path with its start at height 0 before the first frame, with a temperature and a pressure."""
         size = np.cbrt((temperature + 273.15) / (self.temperature[0] + 273.15) * self.pressure[0] / pressure)
         first = (0.0, 0.0, temperature, pressure, float(size), 0.0, np.inf, 0.0)
-        return Ascent(*(np.append(one, all_) for one, all_ in zip(first, self[:-1], strict=True)), self.base)
+        longer: dict[str, Any] = {
+            name: np.append(one, getattr(self, name)) for name, one in zip(self._fields, first, strict=False)
+        }
+        return self._replace(**longer)
 
     @property
     def crosses(self) -> bool:

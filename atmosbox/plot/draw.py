@@ -287,7 +287,12 @@ def draw(
     if panel.areas:
         x, y, _ = curve(dataset, panel, panel.lines[0])
         for name, sign in (("CAPE", 1.0), ("CIN", -1.0)):
-            look = {"facecolor": AREA_COLOURS[name], "hatch": AREA_HATCHES[name], "alpha": 0.7, "linewidth": 0.0}
+            look: dict[str, Any] = {
+                "facecolor": AREA_COLOURS[name],
+                "hatch": AREA_HATCHES[name],
+                "alpha": 0.7,
+                "linewidth": 0.0,
+            }
             area = axes.fill_betweenx(y, np.where(sign * x > 0.0, x, 0.0), edgecolor=FAINT, zorder=0.8, **look)
             entries.append(((area,), name))
     set_limits(axes, panel, most)
@@ -298,8 +303,10 @@ def draw(
 def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
     """Draw the guides of a panel, their texts away from its first curve, and mark where its curves begin."""
     look: dict[str, Any] = {"size": theme.text, "color": FAINT, "textcoords": "offset points", "zorder": 5.0}
-    gap, thin = 0.25 * theme.text, {"color": FAINT, "linewidth": 0.7 * theme.line, "zorder": 1.4}
-    curves = [line for line in axes.lines if 0.0 <= line.get_zorder() - _ORDER["data"] < 0.5 and line.get_xdata().size]
+    thin: dict[str, Any] = {"color": FAINT, "linewidth": 0.7 * theme.line, "zorder": 1.4}
+    drawn = [line for line in axes.lines if 0.0 <= line.get_zorder() - _ORDER["data"] < 0.5]
+    curves = [points for points in (np.asarray(line.get_xydata()) for line in drawn) if points.size]
+    gap = 0.25 * theme.text
     for axis, value, words in panel.guides:
         low, high = sorted(axes.get_xlim() if axis == "x" else axes.get_ylim())
         if not low <= value <= high:
@@ -309,15 +316,15 @@ def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
             axes.annotate(words, (value, 0.0), (gap, gap), xycoords=("data", "axes fraction"), **look)
             continue
         axes.axhline(value, **thin)
-        x, y = curves[0].get_data() if curves else axes.dataLim.get_points().T
-        right = float(axes.transLimits.transform((x[np.nanargmin(np.abs(y - value))], value))[0] < 0.6)
-        place = {"xycoords": ("axes fraction", "data"), "ha": ("left", "right")[int(right)]}
-        axes.annotate(words, (right, value), (gap * (1.0 - 2.0 * right), gap), **place, **look)
+        near = curves[0][np.nanargmin(np.abs(curves[0][:, 1] - value))] if curves else (low, value)
+        right = axes.transLimits.transform(axes.transScale.transform(near))[0] < 0.6
+        place, side = ((1.0, -gap), "right") if right else ((0.0, gap), "left")
+        axes.annotate(words, (place[0], value), (place[1], gap), xycoords=("axes fraction", "data"), ha=side, **look)
     if panel.start and curves:
-        left = panel.start[0] or min(float(line.get_xdata()[0]) for line in curves)
+        begins = panel.start[0] or min(float(points[0, 0]) for points in curves), panel.start[1]
         ring: dict[str, Any] = {"markersize": 1.6 * theme.marker, "markerfacecolor": "white", "markeredgecolor": DARK}
-        axes.add_artist(Line2D([left], [panel.start[1]], marker="o", zorder=4.5, clip_on=False, **ring))
-        axes.annotate("start", (left, panel.start[1]), (1.5 * theme.marker, gap), **look | {"color": DARK})
+        axes.add_artist(Line2D(begins[:1], begins[1:], marker="o", zorder=4.5, clip_on=False, **ring))
+        axes.annotate("start", begins, (1.5 * theme.marker, gap), **look | {"color": DARK})
 
 
 def _from_start(panel: Panel, line: Line, values: Curve) -> Curve:
@@ -402,11 +409,13 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
     """
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
-    extents = {"x": axes.dataLim.intervalx, "y": axes.dataLim.intervaly}
-    for axis, (low, high) in extents.items():
-        if getattr(panel, f"{axis}_scale") == "log" and high * (1.0 - 1e-9) <= low <= high:
-            axes.autoscale(False, axis=axis)
-            axes.set(**{f"{axis}lim": (low / _ONE_LEVEL, high * _ONE_LEVEL)})
+    (left, right), (low, high) = axes.dataLim.intervalx, axes.dataLim.intervaly
+    if panel.x_scale == "log" and right * (1.0 - 1e-9) <= left <= right:
+        axes.set_autoscalex_on(False)
+        axes.set_xlim(left / _ONE_LEVEL, right * _ONE_LEVEL)
+    if panel.y_scale == "log" and high * (1.0 - 1e-9) <= low <= high:
+        axes.set_autoscaley_on(False)
+        axes.set_ylim(low / _ONE_LEVEL, high * _ONE_LEVEL)
     axes.autoscale_view()
     if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:
         axes.set_xlim(left=0.0)
