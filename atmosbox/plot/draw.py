@@ -16,16 +16,7 @@ from numpy.typing import NDArray
 from atmosbox.plot.atmosphere_picture import draw_atmosphere
 from atmosbox.plot.curve import Curve, curve, edges
 from atmosbox.plot.discs import draw_discs
-from atmosbox.plot.theme import (
-    AREA_COLOURS,
-    AREA_HATCHES,
-    CURVES,
-    DARK,
-    DATA_COLOURS,
-    DATA_MARKERS,
-    FAINT,
-    Theme,
-)
+from atmosbox.plot.theme import AREAS, CURVES, DARK, DATA_COLOURS, DATA_MARKERS, FAINT, Theme
 from atmosbox.scene.panels import Line, Panel
 
 # A measured curve of at most this many values is drawn as points with error bars, a longer one as a line with a band.
@@ -77,52 +68,29 @@ def draw_line(
         return _points(axes, panel, values, style, index)
     if measured and sum(other.role == "data" for other in panel.lines) > 1:
         every = max(1, x.size // 8)
-        style |= {
-            "marker": DATA_MARKERS[index % len(DATA_MARKERS)],
-            "markevery": (every // 2 + index * every // 4, every),
-        }
+        style["marker"] = DATA_MARKERS[index % len(DATA_MARKERS)]
+        style["markevery"] = every // 2 + index * every // 4, every
     if measured:
         style["linewidth"] *= min(1.0, max(_THINNEST, _MOST_CROSSINGS / _crossings(x if along_x else y)))
     artists: list[Artist] = []
     if error is not None:
         alpha = 0.3 if measured else 0.15
         fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER["band"]}
-        if along_x:
-            artists.append(axes.fill_betweenx(y, x - error, x + error, **fill))
-        else:
-            artists.append(axes.fill_between(x, y - error, y + error, **fill))
+        along, value, band = (y, x, axes.fill_betweenx) if along_x else (x, y, axes.fill_between)
+        artists.append(band(along, value - error, value + error, **fill))
     artists.extend(axes.plot(x, y, **style))
     return tuple(artists)
 
 
 def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
     """Draw points with bars of one standard error; points whose error is not known are hollow."""
-    along_x = panel.measured_across
-    marker = DATA_MARKERS[index % len(DATA_MARKERS)]
-    bars = axes.errorbar(
-        values.x,
-        values.y,
-        xerr=values.error if along_x else None,
-        yerr=None if along_x else values.error,
-        linestyle="none",
-        marker=marker,
-        capsize=0.0,
-        elinewidth=style["linewidth"],
-        color=style["color"],
-        zorder=style["zorder"],
-    )
-    unsure = hollow_points(values)
-    if unsure.any():
-        axes.plot(
-            values.x[unsure],
-            values.y[unsure],
-            linestyle="none",
-            marker=marker,
-            color=style["color"],
-            markerfacecolor="white",
-            zorder=style["zorder"] + 0.5,
-        )
-    return (cast(Artist, bars),)
+    x, y, error = values
+    look = {"linestyle": "none", "marker": DATA_MARKERS[index % len(DATA_MARKERS)], "color": style["color"]}
+    bars = {"xerr" if panel.measured_across else "yerr": error, "elinewidth": style["linewidth"]}
+    drawn = axes.errorbar(x, y, capsize=0.0, zorder=style["zorder"], **look, **bars)
+    if (unsure := hollow_points(values)).any():
+        axes.plot(x[unsure], y[unsure], markerfacecolor="white", zorder=style["zorder"] + 0.5, **look)
+    return (cast(Artist, drawn),)
 
 
 def hollow_points(values: Curve) -> NDArray[np.bool_]:
@@ -201,12 +169,10 @@ def draw_steps(
     """
     x, y, error = curve(dataset, panel, line)
     colour = colour or DATA_COLOURS[index % len(DATA_COLOURS)]
-    bounds = edges(dataset, panel, line)
-    look = {"color": colour, "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["band"]}
-    area = (axes.stairs(y, bounds, fill=True, **look),) if filled else ()
-    steps = axes.stairs(
-        y, bounds, color=colour, linewidth=theme.line, linestyle=style, baseline=None, zorder=_ORDER["data"]
-    )
+    bounds, order = edges(dataset, panel, line), _ORDER["data"]
+    tint: dict[str, Any] = {"color": colour, "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["band"]}
+    area = (axes.stairs(y, bounds, fill=True, **tint),) if filled else ()
+    steps = axes.stairs(y, bounds, color=colour, linewidth=theme.line, linestyle=style, baseline=None, zorder=order)
     if error is not None:
         axes.errorbar(x, y, error, linestyle="none", color=colour, capsize=0.0, zorder=_ORDER["data"])
     return *area, steps
@@ -229,11 +195,8 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
     'solid'
     """
     colours, dashes, width = CURVES[role]
-    return {
-        "color": colours[index % len(colours)],
-        "linestyle": dashes[index % len(dashes)],
-        "linewidth": theme.line * width,
-    }
+    look = {"color": colours[index % len(colours)], "linestyle": dashes[index % len(dashes)]}
+    return look | {"linewidth": theme.line * width}
 
 
 Entry = tuple[tuple[Artist, ...], str]
@@ -287,13 +250,7 @@ def draw(
     if panel.areas:
         x, y, _ = curve(dataset, panel, panel.lines[0])
         for name, sign in (("CAPE", 1.0), ("CIN", -1.0)):
-            look: dict[str, Any] = {
-                "facecolor": AREA_COLOURS[name],
-                "hatch": AREA_HATCHES[name],
-                "alpha": 0.7,
-                "linewidth": 0.0,
-            }
-            area = axes.fill_betweenx(y, np.where(sign * x > 0.0, x, 0.0), edgecolor=FAINT, zorder=0.8, **look)
+            area = axes.fill_betweenx(y, np.where(sign * x > 0.0, x, 0.0), zorder=0.8, **AREAS[name])
             entries.append(((area,), name))
     set_limits(axes, panel, most)
     draw_guides(axes, panel, theme)

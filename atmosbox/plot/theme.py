@@ -39,8 +39,10 @@ CURVES: dict[str, tuple[tuple[str, ...], tuple[Any, ...], float]] = {
 FIELD_COLOURS = "viridis"
 AGREES = _GREEN
 # Areas differ by colour and by hatching; the background lines of a diagram are paler than any curve.
-AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}
-AREA_HATCHES = {"CAPE": "////", "CIN": "\\\\\\\\"}
+AREAS: dict[str, dict[str, Any]] = {
+    name: {"facecolor": colour, "hatch": hatch, "edgecolor": FAINT, "linewidth": 0.0, "alpha": 0.7}
+    for name, colour, hatch in (("CAPE", _ORANGE, "////"), ("CIN", _SKY, "\\\\\\\\"))
+}
 PALE = "#c4c4c4"
 
 
