@@ -53,7 +53,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "A column of atmosphere"
+title = "Why does the air thin with height, but not fall down?"
 level = "first year"
 minutes = 10
 FRAMES = 240
@@ -445,39 +445,39 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return density, pressure and temperature against height."""
+    """Return pressure and temperature against height."""
 
     def against_height(
-        title: str, name: str, theory: str, other: Line, label: str, unit: str, scale: str, headline: str
+        title: str,
+        name: str,
+        theory: str,
+        others: tuple[Line, ...],
+        label: str,
+        unit: str,
+        headlines: tuple[str, ...],
+        **more: Any,
     ) -> Panel:
         measured = Line(name, "height", "molecules", error=f"{name}_se")
-        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), other
+        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), *others
         return Panel(
-            "profile",
-            title,
-            lines,
-            x_label=label,
-            x_unit=unit,
-            x_scale=scale,
-            y_label="height",
-            y_unit="km",
-            headlines=(headline,),
-        )
+            "profile", title, lines, x_label=label, x_unit=unit, y_label="height", y_unit="km", headlines=headlines,
+            **more,
+        )  # fmt: skip
 
-    smooth, barometric = "finite column and molecules", "barometric law"
-    thin = Line("number_density_barometric", "height", barometric, "reference")
-    light = Line("layer_pressure_barometric", "height", barometric, "reference")
-    real = Line("layer_temperature_standard", "height", "standard atmosphere, heated from below", "environment")
+    real = Line("layer_temperature_standard", "height", "standard atmosphere", "environment")
+    scale = 1e-3 * BOLTZMANN * settings.si.temperature / (DRY_AIR.molecule_mass * settings.si.gravity)
+    held = -math.expm1(-settings.height / scale)  # the share of an endless column that is below the ceiling
+    below = ((share, -scale * math.log1p(-share * held)) for share in (0.5, 0.75, 0.9))
+    guides = tuple(
+        ("y", height, f"{100.0 * share:.0f} % of the air is below {height:.1f} km") for share, height in below
+    )
     return (
         against_height(
-            "Density falls with height", "number_density", smooth, thin, "number density", "", "log", "scale_height"
+            "The air thins with height", "layer_pressure", "barometric law, finite molecules", (),
+            "pressure", "hPa", ("scale_height", "mean_surface_pressure"), guides=guides,
         ),
         against_height(
-            "Pressure falls with height", "layer_pressure", smooth, light, "pressure", "hPa", "log",
-            "mean_surface_pressure",
-        ),
-        against_height(
-            "At rest it is isothermal", "layer_temperature", "isothermal", real, "temperature", "degC", "linear",
-            "mean_temperature",
+            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "degC",
+            ("mean_temperature",),
         ),
     )  # fmt: skip

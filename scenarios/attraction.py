@@ -68,7 +68,7 @@ from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Attraction"
+title = "What makes a gas become a liquid?"
 level = "second year"
 minutes = 20
 ladder = (Series("exact", "molecules", (200, 400, 800)),)
@@ -638,8 +638,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     grown = over_time(
         "A drop forms in the vapour" if settings.start == "vapour" else "Drop and vapour",
         {"largest_drop_molecule_count": "largest drop", "vapor_molecule_count": "free vapour"},
-        "molecules",
-        headline="last_largest_drop_molecule_count" if settings.start != "slab" else "",
+        f"molecules of {settings.substance}",
     )
     energies = over_time(
         "Energy from attraction becomes motion"
@@ -651,10 +650,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "zJ",
     )
     warm = over_time(
-        "Condensation releases heat" if settings.start == "vapour" else "Temperature",
+        "At first condensation warms it" if settings.start == "vapour" else "Temperature",
         {"air_temperature": "molecules"},
         "temperature",
         "K",
+        start=settings.temperature if settings.start == "vapour" else None,
         theory="thermostat" if settings.bath != "none" else "",
         headline="mean_temperature",
     )
@@ -684,11 +684,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         {"virial_pressure": "molecules"},
         "pressure",
         "bar",
-        theory="" if settings.air else "free vapour: gas law with B2 and B3",
+        theory="" if settings.air else "theory of the free vapour",
         parts=50,
         headline="mean_virial_pressure",
     )
     if settings.heating:
         heated = replace(energies, title="Heat separates the molecules")
         return (_heating_panel("Heat first warms the drop, then evaporates it"), grown, heated)
-    return (grown, energies, warm, pressure)
+    return (grown, energies, warm) if settings.bath == "none" else (warm, pressure, grown)

@@ -46,7 +46,7 @@ from atmosbox.scene.statistics import BlockAverage
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Condensation"
+title = "When is air saturated?"
 level = "first year"
 minutes = 15
 FRAMES = 240
@@ -227,8 +227,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the panels of vapour pressure, both rates and water against time, and of the drops if there are any."""
+    """Return the panels of vapour pressure and both rates against time, and of the drops if there are any."""
     grown = over_time("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", log=True)
+    begun = settings.si.humidity * float(law.saturation_vapor_pressure(settings.si.temperature)) / 100.0
     return (
         over_time(
             "Vapour condenses until saturation",
@@ -239,9 +240,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             parts=PARTS,
             headline="mean_water_vapor_partial_pressure",
             theory="saturation, prescribed",
+            start=begun,
+            note="Then it fluctuates about it by chance.",
         ),
         over_time(
-            "In equilibrium both rates are equal",
+            "Then as many condense as evaporate",
             {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
             "molecules per time",
             "ns-1",
@@ -249,14 +252,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             parts=PARTS,
             headline="mean_condensation_rate",
             theory="theory",
-        ),
-        over_time(
-            "Water: vapour and droplets",
-            {"vapor_molecule_count": "vapour", "liquid_molecule_count": "droplets"},
-            "molecules",
-            log=True,
-            parts=PARTS,
-            headline="mean_relative_humidity",
         ),
         *((grown,) if settings.drops else ()),
     )

@@ -63,7 +63,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Why warm air rises"
+title = "Why does warm air rise?"
 level = "first year"
 minutes = 15
 FRAMES = 120
@@ -528,19 +528,14 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("layer_temperature_adiabatic", "height", "adiabat", "reference"),
             ),
             x_label="temperature", x_unit="degC", y_label="height", y_unit="km",
-            headlines=("mean_core_lapse_rate", "nusselt_number"),
+            headlines=("mean_core_lapse_rate",),
         )  # fmt: skip
     rolls = Panel(
-        "line", "The wind",
+        "line", "The wind grows and stays",
         (
             Line("elapsed_time", "roll_speed", "rolls"),
             Line("elapsed_time", "roll_speed_theory", "linear theory", "theory"),
         ),
         x_label="time", x_unit="min", y_label="speed of the rolls", headlines=("mean_wind_speed",),
     )  # fmt: skip
-    released = Panel(
-        "line", "What is released at the floor",
-        (Line("elapsed_time", "tracer_share_aloft", "in the upper half"),),
-        x_label="time", x_unit="min", y_label="share aloft", y_unit="percent", headlines=("share_from_the_floor",),
-    )  # fmt: skip
-    return profile, rolls, released
+    return profile, rolls

@@ -46,7 +46,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Diffusion"
+title = "Why do gases mix?"
 level = "school"
 minutes = 15
 ladder = (
@@ -301,19 +301,20 @@ def _entropy_spread(passed: float, molecules: int) -> tuple[float, float, float]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the share across the box at three moments, the decay of the slowest mode, and the entropy."""
-    shares = {"early": "τ/10", "middle": "τ/2", "late": "2τ"}
+    """Return the share across the box at three moments, the decay of the difference, and the entropy."""
+    lasts = 1e9 * _scale(settings).time / _rate(settings, ideal=False)
+    shares = {name: f"{moment * lasts:.2g} ns" for name, moment in MOMENTS.items()}
     return (
         over_time(
-            "The difference decays",
-            {"mixing_amplitude": "left-right difference"},
-            "difference",
+            "Left and right become alike",
+            {"mixing_amplitude": "molecules"},
+            "left minus right",
             theory="theory",
             headline="diffusion_coefficient",
         ),
         over_time(
             "Mixing makes entropy",
-            {"mixing_entropy": "counted"},
+            {"mixing_entropy": "molecules"},
             "entropy / N k ln 2",
             theory="theory",
             headline="entropy_after_one_mixing_time",
@@ -326,7 +327,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 for name, label in shares.items()
                 for line in (
                     Line("distance", f"left_gas_share_{name}", label, error=f"left_gas_share_{name}_se"),
-                    Line("distance", f"left_gas_share_{name}_theory", f"{label}, theory", "theory"),
+                    Line("distance", f"left_gas_share_{name}_theory", "theory", "theory"),
                 )
             ),
             x_label="distance from the left wall",

@@ -27,6 +27,7 @@ from atmosbox.scene import (
     SceneSettings,
     Series,
     Setup,
+    Speeds,
     block_average,
     setting,
 )
@@ -38,7 +39,7 @@ from atmosbox.scene.rounding import rounded
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Elastic collisions"
+title = "Do light or heavy discs have more energy?"
 level = "school"
 minutes = 10
 FRAMES = 1200
@@ -90,7 +91,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         scale,
         si.duration / scale.time,
         FRAMES,
-        (Air(), Discs()),
+        (Air(), Discs(), Speeds(np.linspace(0.0, 5.0, 51))),
         settle=SETTLE,
         time_unit="s",
         facts={
@@ -104,9 +105,15 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the mean energy that all discs reach, that of the start."""
+    """Return the mean energy that all discs reach, that of the start, and Maxwell's law of speeds in a plane."""
     mean = dataset.kinetic_energy.values[0] / settings.molecules
-    return {"kinetic_energy_light_theory": np.full(dataset.sizes["elapsed_time"], mean)}
+    # of discs of mass m a share exp(-m v^2 / 2 kT) is faster than v, and kT is the mean energy
+    slower = -np.expm1(-dataset.disc_mass.values * dataset.speed_bnds.values[..., None] ** 2 / (2.0 * mean))
+    share = np.diff(slower.mean(axis=-1), axis=1)[:, 0] / np.diff(dataset.speed_bnds.values, axis=1)[:, 0]
+    return {
+        "kinetic_energy_light_theory": np.full(dataset.sizes["elapsed_time"], mean),
+        "speed_probability_density_theory": share,
+    }
 
 
 def _memory(dataset: "xr.Dataset") -> float:
@@ -166,8 +173,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the panels of the discs, of the energies, and of the conserved quantities."""
+    """Return the panels of the discs, of their energies, and of their speeds."""
     unlike = settings.mass_ratio > 1.0
+    density = "speed_probability_density"
     light, heavy = ("light half", "heavy half") if unlike else ("one half", "the other")
     return (
         Panel("discs", "The discs at the end", x_unit="m"),
@@ -175,13 +183,19 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
             {"running_energy_light": light, "running_energy_heavy": heavy},
             "mean energy so\u00a0far",
-            more=(Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),),
+            more=(Line("elapsed_time", "kinetic_energy_light_theory", "mean of all: conserved", "theory"),),
             log=True,
             headline="energy_of_light_discs",
         ),
-        over_time(
-            "Energy and momentum are conserved",
-            {"energy_change": "energy", "momentum_residual": "momentum, with walls"},
-            "relative change",
+        Panel(
+            "histogram",
+            "They do not keep their equal speeds",
+            (
+                Line("speed", density, "discs", error=f"{density}_se"),
+                Line("speed", f"{density}_theory", "Maxwell, in a plane", "theory"),
+            ),
+            x_label="speed",
+            y_label="probability density",
+            guides=(("x", settings.speed, "start"),),
         ),
     )

@@ -53,7 +53,7 @@ from atmosbox.theory.constants import BOLTZMANN
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Evaporation"
+title = "Why does evaporation cool?"
 level = "school"
 minutes = 10
 FRAMES = 400
@@ -279,7 +279,7 @@ def _saturation(late: "xr.Dataset", vapour: Headline, start: AirOverPool, chance
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the panels of temperatures, vapour pressure and both rates against time, and of the energies."""
+    """Return the panels of temperatures and vapour pressure against time, and of the energies."""
     leave = "leaving_energy_probability_density"
     return (
         over_time(
@@ -291,25 +291,16 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             parts=PARTS,
             headline="mean_liquid_temperature",
             theory="theory",
+            start=settings.temperature,
         ),
         over_time(
-            "Vapour pressure reaches saturation",
+            "Until the air is saturated",
             {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
             "vapour pressure",
             "hPa",
             log=True,
             parts=PARTS,
             headline="final_humidity",
-            theory="theory",
-        ),
-        over_time(
-            "In equilibrium both rates are equal",
-            {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
-            "molecules per time",
-            "ns-1",
-            log=True,
-            parts=PARTS,
-            headline="mean_evaporation_rate",
             theory="theory",
         ),
         Panel(

@@ -45,7 +45,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Lifting dry air"
+title = "How cold does rising air become?"
 level = "first year"
 minutes = 15
 FRAMES = 40
@@ -233,46 +233,27 @@ def _levels(settings: Settings) -> list[float]:
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the panels of the parcel on its ascent, and of temperature against pressure and against height."""
-    parcel = "parcel_temperature"
-    others = (
-        ()
-        if settings.rotation
-        else (Line("dry_air_adiabat_temperature", "parcel_pressure", "dry air, γ = 7/5", "reference"),)
-    )
+    """Return the panels of the parcel on its ascent, and of its temperature against height."""
     adiabat = "dry adiabat" if settings.rotation else "adiabat, γ = 5/3"
+    height = "parcel_height"
+    lines = (
+        Line("parcel_temperature", height, "parcel", error="parcel_temperature_se"),
+        Line("adiabat_temperature", height, adiabat, "theory"),
+        Line("environment_temperature", height, "environment", "environment"),
+        Line("dry_air_adiabat_temperature", height, "dry air, γ = 7/5", "reference"),
+    )
+    picture = atmosphere_panel("The parcel expands", tuple(f"temperature_at_{p:.0f}_hpa" for p in _levels(settings)))
     return (
-        atmosphere_panel(
-            "The parcel on its way", tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings))
-        ),
+        replace(picture, start=(settings.temperature, settings.pressure)),
         Panel(
             "profile",
-            "A rising parcel cools",
-            (
-                Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se"),
-                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
-                Line("environment_temperature", "environment_pressure", "environment", "environment"),
-                *others,
-            ),
-            x_label="temperature",
-            y_label="pressure",
-            x_unit="degC",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-        ),
-        Panel(
-            "profile",
-            "Cooling with height",
-            (
-                Line(parcel, "parcel_height", "parcel", error="parcel_temperature_se"),
-                Line("adiabat_temperature", "parcel_height", adiabat, "theory"),
-                Line("environment_temperature", "parcel_height", "environment", "environment"),
-            ),
+            "It cools by ten degrees per kilometre" if settings.rotation else "It cools",
+            lines[:3] if settings.rotation else lines,
             x_label="temperature",
             y_label="height",
             x_unit="degC",
             y_unit="km",
             headlines=("lapse_rate_of_the_first_kilometre",),
+            start=(settings.temperature, 0.0),
         ),
     )

@@ -41,7 +41,7 @@ from atmosbox.scene.engines import EXACT, suited, used
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Lifting moist air"
+title = "Where does a cloud begin?"
 level = "second year"
 minutes = 20
 FRAMES = 60

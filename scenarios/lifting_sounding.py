@@ -37,7 +37,7 @@ from atmosbox.scene.engines import EXACT, suited, used
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Lifting through a sounding"
+title = "Will there be a thunderstorm?"
 level = "second year"
 minutes = 20
 FRAMES = 80
@@ -217,11 +217,13 @@ def _metpy(settings: Settings) -> tuple[Headline, ...]:
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the skew-T, of the buoyancy, and of the parcel on its ascent."""
-    verdict = _verdict(settings)
+    convection, ascent = _convection(settings), _ascent(settings)
+    reached = max(ascent.top_pressure, 0.92 * (convection.el or 0.0))
+    rises = convection.lfc is not None
     return (
         Panel(
             "skewt",
-            f"This air is {verdict}",
+            f"This air is {_verdict(settings)}",
             (
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
@@ -230,18 +232,24 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             ),
             x_label="temperature",
             y_label="pressure",
-            headlines=("cape", "cin") if _convection(settings).lfc is not None else (),
+            headlines=("cape", "cin") if rises else (),
             marks=("cloud_base", "lfc", "el"),
         ),
         Panel(
             "profile",
-            "Buoyancy",
+            "Past CIN it rises" if rises else "It never rises",
             (Line("parcel_buoyancy", "parcel_pressure", "parcel"),),
             x_label="buoyancy",
             y_label="pressure",
             y_unit="hPa",
             y_scale="log",
             y_invert=True,
+            y_limits=(ascent.pressure / 100.0, reached / 100.0),
+            guides=(("x", 0.0, ""),),
+            areas=True,
         ),
-        atmosphere_panel("The parcel on its way"),
+        replace(
+            atmosphere_panel("Its cloud ends at the EL" if convection.el else "The parcel on its way"),
+            start=(ascent.temperature - 273.15, ascent.pressure / 100.0),
+        ),
     )

@@ -17,6 +17,7 @@ nanoseconds.
 
 import functools
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,7 +41,7 @@ from atmosbox.scene.panels import over_time
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Over the mountains"
+title = "Why is the foehn warm and dry?"
 level = "first year"
 minutes = 10
 FRAMES = 96
@@ -183,34 +184,37 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the panels of the way, of the temperature along it, and of the water."""
+    """Return the panels of the way, and of temperature and water along it."""
     rain = (
         Line("elapsed_time", "rain_mixing_ratio", "rain"),
         Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
     )
+    warm = over_time(
+        "It arrives warmer than it set out" if settings.rain else "It arrives as warm as it set out",
+        {"parcel_temperature": "parcel"},
+        "temperature",
+        "degC",
+        more=(
+            Line("elapsed_time", "adiabat_temperature", "theory", "theory"),
+            Line("elapsed_time", "environment_temperature", "environment", "environment"),
+        ),
+        headline="arrival_temperature",
+        start=settings.temperature,
+        guides=(("y", settings.temperature, ""),),
+    )
+    water = over_time(
+        "Rain has taken part of its water" if settings.rain else "Vapour and cloud",
+        {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"},
+        "mixing ratio",
+        "g kg-1",
+        theory="vapour, theory",
+        more=rain if settings.rain else (),
+        headline="rain" if settings.rain else "",
+    )
+    way = "the way of the parcel, from the plain to the plain beyond"
+    time = "time in the box; in the Alps hours"
     return (
-        atmosphere_panel("Over two mountains", way="the way of the parcel, from the plain to the plain beyond"),
-        Panel(
-            "profile",
-            "Saturated up, dry down" if settings.rain else "The same way up and down",
-            (
-                Line("parcel_temperature", "parcel_height", "parcel", error="parcel_temperature_se"),
-                Line("adiabat_temperature", "parcel_height", "theory", "theory"),
-                Line("environment_temperature", "parcel_height", "environment", "environment"),
-            ),
-            x_label="temperature",
-            y_label="height",
-            x_unit="degC",
-            y_unit="km",
-            headlines=("arrival_temperature",),
-        ),
-        over_time(
-            "Vapour, cloud and rain",
-            {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"},
-            "mixing ratio",
-            "g kg-1",
-            theory="vapour, theory",
-            more=rain if settings.rain else (),
-            headline="rain" if settings.rain else "",
-        ),
+        replace(atmosphere_panel("Over two mountains", way=way), start=(settings.temperature, settings.pressure)),
+        replace(warm, x_label=time),
+        replace(water, x_label=time),
     )

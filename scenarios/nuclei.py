@@ -50,7 +50,7 @@ from atmosbox.theory.constants import BOLTZMANN
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Why clouds need dust"
+title = "Why do clouds need dust?"
 level = "second year"
 minutes = 20
 FRAMES = 240
@@ -315,7 +315,7 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the panels of radii and humidity against time, and of the humidity over drops of any radius."""
+    """Return the panels of radii against time, and of the humidity over drops of any radius."""
     there = [name for name, count in (("salted", settings.salted), ("pure", settings.pure)) if count]
     called = {"salted": "with salt", "pure": "pure water"}
     law_of = {"salted": "with salt: Köhler", "pure": "pure water: Kelvin"}
@@ -330,14 +330,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             more=tuple(Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there),
             headline="salted_drop_radius_at_the_end" if settings.salted else "",
         ),
-        over_time(
-            "The humidity is the same for all",
-            {"saturation_ratio": "air"},
-            "relative humidity",
-            "percent",
-            theory="theory",
-            headline="humidity_over_drops",
-        ),
         Panel(
             "line",
             "Above its curve a drop grows",
@@ -346,5 +338,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_label="relative humidity",
             x_unit="nm",
             y_unit="percent",
+            headlines=("humidity_over_drops",),
+            guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),),
+            x_limits=(0.5, 2.5),
         ),
     )

@@ -41,7 +41,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Temperature"
+title = "What is temperature?"
 level = "school"
 minutes = 10
 FRAMES = 1000
@@ -149,11 +149,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "Cold molecules between warm walls" if warming else "Hot molecules between cooler walls",
         {"air_temperature": "molecules"}, "temperature", "degC",
         more=(Line(time, walls, "walls ± expected scatter", "theory", error=noise),),
-        log=True, parts=60, headline="mean_temperature",
+        log=True, parts=60, headline="mean_temperature", start=settings.start_temperature,
     )  # fmt: skip
     pressure = over_time(
         "Their impacts are the pressure", {"air_pressure": "six walls"}, "pressure", "hPa",
-        theory="n k T Z", log=True, parts=60, headline="mean_pressure",
+        theory="n k T, molecules of finite size", log=True, parts=60, headline="mean_pressure",
     )  # fmt: skip
     measured = Line("speed", density, "molecules", error=f"{density}_se")
     lines = (measured, Line("speed", f"{density}_theory", "Maxwell", "theory"))

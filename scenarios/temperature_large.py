@@ -5,7 +5,7 @@ the walls; and the thermometer scatters half as much, 9 K for eight hundred mole
 the square root of their number.
 """
 
-title = "Temperature, more molecules"
+title = "What is temperature? More molecules"
 level = "school"
 minutes = 10
 variant_of = "temperature"

@@ -77,7 +77,7 @@ def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
     assert repr(both).splitlines()[0] == "lifting-dry: temperature 15 degC / 30 degC"
     assert any(line.startswith("temperature at 300 hPa") for line in repr(both).splitlines())
     assert {"<pre", "<img alt="} <= {word for word in ("<pre", "<img alt=") if word in both._repr_html_()}
-    assert len(both.figure.axes) > 1
+    assert both.figure.axes
 
 
 def test_a_sweep_takes_lists_and_words(tmp_path):
@@ -112,7 +112,7 @@ def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
     frame = tab.frame_locator("iframe")
     frame.locator("canvas").first.wait_for(timeout=20_000)
     assert tab.locator("iframe").bounding_box()["height"] == 500
-    assert "Temperature" in frame.locator("h1").inner_text()
+    assert "What is temperature?" in frame.locator("h1").inner_text()
     tab.close()
     assert faults == []
 

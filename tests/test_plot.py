@@ -241,7 +241,7 @@ def test_what_was_not_measured_is_not_said():
 
 
 def test_numbers_have_the_digits_that_their_error_allows():
-    assert caption.number(1234.5678, 0.234) == "1234.57 ± 0.23"
+    assert caption.number(1234.5678, 0.234) == "1234.6 ± 0.2"
     assert caption.number(0.0, 0.0) == "0"
     assert caption.number(-1.5e-9, 3e-10, signed=True) == "(−1.5 ± 0.3) × 10⁻⁹"
 

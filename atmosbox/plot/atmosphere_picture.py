@@ -30,7 +30,7 @@ _DESCENT = 0.1
 """A path that goes down again by more than this share of its range of heights leads over mountains."""
 _RADIUS = 0.75
 """Radius of the parcel at the start, in units of the type size."""
-_MIDDLE = 0.36
+_MIDDLE = 0.4
 """Horizontal position of a vertical path, in widths of the picture."""
 _PUFFS = 9
 """Number of puffs across the width of a cloud."""
@@ -59,6 +59,20 @@ class Ascent(NamedTuple):
     """Measured rain per dry air from the start up to the frame [kg kg-1]; 0 where none falls."""
     base: float
     """Height of the measured cloud base [km]; NaN where the run measures none above the ground."""
+
+    def part(self, chosen: NDArray[np.bool_]) -> Ascent:
+        """Return the path in some of the frames only."""
+        parts: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self._fields[:-1]}
+        return self._replace(**parts)
+
+    def from_ground(self, temperature: float, pressure: float) -> Ascent:
+        """Return the path with its start at height 0 before the first frame, with a temperature and a pressure."""
+        size = np.cbrt((temperature + 273.15) / (self.temperature[0] + 273.15) * self.pressure[0] / pressure)
+        first = (0.0, 0.0, temperature, pressure, float(size), 0.0, np.inf, 0.0)
+        longer: dict[str, Any] = {
+            name: np.append(one, getattr(self, name)) for name, one in zip(self._fields, first, strict=False)
+        }
+        return self._replace(**longer)
 
     @property
     def crosses(self) -> bool:
@@ -125,13 +139,15 @@ def ascent_of(dataset: xr.Dataset) -> Ascent:
     )
 
 
-def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
+def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme, start: tuple[float, ...] = ()) -> list[Entry]:
     """Draw the whole path of a parcel through the atmosphere, with its measured temperature at several points.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run, as `ascent_of` takes it.
+    start : tuple of float
+        Temperature [degC] and pressure [hPa] at height 0, from which the parcel set out; empty if not known.
 
     Returns
     -------
@@ -154,6 +170,10 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry
     ['parcel']
     """
     way = ascent_of(dataset)
+    if "el" in dataset:  # above its equilibrium level a parcel does not rise
+        way = way.part(~(way.pressure < float(dataset["el"]) / 1e2))
+    if start:
+        way = way.from_ground(*start)
     draw_ground(axes, way, theme)
     if way.crosses:
         stations = _turns(way.height)
@@ -261,8 +281,9 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
             side = 1 if place == 0 and stations.size > 1 else -1 if frame == way.height.size - 1 else 0
             _say(axes, warm, at, (side, 1), theme, bold=True)
         else:
-            _say(axes, warm, at, (1, 0), theme, bold=True, lower=-0.55)
-            _say(axes, f"{way.pressure[frame]:.0f} hPa", at, (1, 0), theme, lower=0.55)
+            up = 0.6 if way.height[frame] <= 0.02 * way.height[-1] else 0.0  # not over the ground
+            _say(axes, warm, at, (1, 0), theme, bold=True, lower=-0.55 - up)
+            _say(axes, f"{way.pressure[frame]:.0f} hPa", at, (1, 0), theme, lower=0.55 - up)
     parcel = Line2D(
         [], [], linestyle="none", marker="o", markersize=theme.text, markerfacecolor=_CLEAR, markeredgecolor=_BLUE,
         markeredgewidth=theme.line,
@@ -301,7 +322,7 @@ def _tower(axes: Axes, base: float, top: float, room: float, theme: Theme) -> No
     rows = max(2, round(16.0 * (top - base) / room))
     share, place = np.repeat(np.linspace(0.0, 1.0, rows), _PUFFS), np.tile(np.linspace(-1.0, 1.0, _PUFFS), rows)
     rng = np.random.default_rng(5)  # the same cloud in every picture
-    half = 0.36 - 0.14 * share * (top - base) / room
+    half = 0.3 - 0.12 * share * (top - base) / room
     radius = 1.2 + 0.5 * rng.random(share.size)
     across = _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size))
     above = Rectangle((0.0, base), 1.0, room, transform=axes.transData)

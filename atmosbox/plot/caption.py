@@ -29,7 +29,7 @@ class Reading(NamedTuple):
     theory: str
     """The value of the textbook, with its unit."""
     difference: str
-    """Measured minus textbook, with its unit."""
+    """Whether both agree; if they do not, measured minus textbook, and within how much it was expected."""
 
     @property
     def sentence(self) -> str:
@@ -105,11 +105,13 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
     >>> [words.split() for words in headline(dataset, "t")[3:]]
     [['adiabat', '204.41', 'K'], ['difference', '+0.12', 'K']]
 
-    How far it is expected to be from theory at most follows, by chance and by the known error of the model together:
+    The difference is expected within what chance and the known error of the model allow together:
 
-    >>> dataset.t.attrs |= {"misfit_allowed_by_chance": 0.2, "misfit_allowed_as_known": 0.1}
-    >>> headline(dataset, "t").difference.replace("\u00a0", " ")
-    'difference +0.12 K, expected within ±0.30 K'
+    >>> for known in (0.1, 0.0):
+    ...     dataset.t.attrs |= {"misfit_allowed_by_chance": 0.1, "misfit_allowed_as_known": known}
+    ...     print(headline(dataset, "t").difference.replace("\u00a0", " "))
+    agrees
+    difference +0.12 K, expected within ±0.10 K
     """
     value = _scalar(dataset, name)
     if not math.isfinite(value):
@@ -137,14 +139,16 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
         )
     )
     away = _known(apart, error, _symbol(of_difference(shown)), signed=True)
-    if most > 0.0:
+    if abs(apart) <= most:
+        away = ""
+    elif most > 0.0:
         away += f", expected within ±{_known(most, error, _symbol(of_difference(shown)))}"
     return Reading(
         label,
         digits,
         spread,
         f"{called} {_known(expected, error, _symbol(shown))}",
-        f"difference {away}",
+        f"difference {away}" if away else "agrees",
     )
 
 
@@ -194,7 +198,7 @@ def _digits(value: float, error: float, *, signed: bool = False) -> tuple[str, s
     value, error = value / 10.0**power, error / 10.0**power
     if known:
         magnitude = math.floor(math.log10(error))
-        decimals = (1 if error < 2.95 * 10.0**magnitude else 0) - magnitude
+        decimals = (1 if error < 1.95 * 10.0**magnitude else 0) - magnitude
     elif power or not value:
         decimals = 1 if power else 0
     else:

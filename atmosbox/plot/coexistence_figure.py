@@ -91,7 +91,7 @@ def draw_coexistence(dataset: xr.Dataset, members: int, look: Theme) -> Figure:
     runs = "one run" if members == 1 else f"mean of {members} runs"
     small = f"atmosbox {parameters.get('version', data.attrs.get('product_version', ''))} · {parameters['scene']}"
     small += f" · each point {runs} · bars: ± 1 standard error"
-    heading = str(data.attrs.get("title", "")) if look.heading else ""
+    heading = str(data.attrs.get("title", ""))
     return page(
         tuple(panels), look, flat, painter(flat, look), [each for each in readings if each is not None], small, heading
     )

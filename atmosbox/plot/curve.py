@@ -130,6 +130,8 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     x, y = (measured, along) if measured_is_x else (along, measured)
     if panel.averages and line.role == "data" and error is None:
         x, y, error = _averaged(x, y, panel)
+    if panel.y_limits and panel.kind == "profile":  # what lies beyond does not widen the other axis
+        x = np.where((y < min(panel.y_limits)) | (y > max(panel.y_limits)), np.nan, x)
     return Curve(_for_scale(x, panel.x_scale), _for_scale(y, panel.y_scale), error)
 
 

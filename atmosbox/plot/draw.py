@@ -9,20 +9,21 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from numpy.typing import NDArray
 
 from atmosbox.plot.atmosphere_picture import draw_atmosphere
 from atmosbox.plot.curve import Curve, curve, edges
 from atmosbox.plot.discs import draw_discs
-from atmosbox.plot.theme import CURVES, DATA_COLOURS, DATA_MARKERS, Theme
+from atmosbox.plot.theme import AREAS, CURVES, DARK, DATA_COLOURS, DATA_MARKERS, FAINT, Theme
 from atmosbox.scene.panels import Line, Panel
 
 # A measured curve of at most this many values is drawn as points with error bars, a longer one as a line with a band.
 MOST_POINTS = 40
 # A curve that crosses its whole range more often than this is drawn thinner, so that its scatter does not become a
 # solid area; at the thinnest, this share of the usual width.
-_MOST_CROSSINGS, _THINNEST = 25.0, 0.5
+_MOST_CROSSINGS, _THINNEST = 25.0, 0.4
 _ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
 
 
@@ -67,52 +68,29 @@ def draw_line(
         return _points(axes, panel, values, style, index)
     if measured and sum(other.role == "data" for other in panel.lines) > 1:
         every = max(1, x.size // 8)
-        style |= {
-            "marker": DATA_MARKERS[index % len(DATA_MARKERS)],
-            "markevery": (every // 2 + index * every // 4, every),
-        }
+        style["marker"] = DATA_MARKERS[index % len(DATA_MARKERS)]
+        style["markevery"] = every // 2 + index * every // 4, every
     if measured:
         style["linewidth"] *= min(1.0, max(_THINNEST, _MOST_CROSSINGS / _crossings(x if along_x else y)))
     artists: list[Artist] = []
     if error is not None:
         alpha = 0.3 if measured else 0.15
         fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER["band"]}
-        if along_x:
-            artists.append(axes.fill_betweenx(y, x - error, x + error, **fill))
-        else:
-            artists.append(axes.fill_between(x, y - error, y + error, **fill))
+        along, value, band = (y, x, axes.fill_betweenx) if along_x else (x, y, axes.fill_between)
+        artists.append(band(along, value - error, value + error, **fill))
     artists.extend(axes.plot(x, y, **style))
     return tuple(artists)
 
 
 def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
     """Draw points with bars of one standard error; points whose error is not known are hollow."""
-    along_x = panel.measured_across
-    marker = DATA_MARKERS[index % len(DATA_MARKERS)]
-    bars = axes.errorbar(
-        values.x,
-        values.y,
-        xerr=values.error if along_x else None,
-        yerr=None if along_x else values.error,
-        linestyle="none",
-        marker=marker,
-        capsize=0.0,
-        elinewidth=style["linewidth"],
-        color=style["color"],
-        zorder=style["zorder"],
-    )
-    unsure = hollow_points(values)
-    if unsure.any():
-        axes.plot(
-            values.x[unsure],
-            values.y[unsure],
-            linestyle="none",
-            marker=marker,
-            color=style["color"],
-            markerfacecolor="white",
-            zorder=style["zorder"] + 0.5,
-        )
-    return (cast(Artist, bars),)
+    x, y, error = values
+    look = {"linestyle": "none", "marker": DATA_MARKERS[index % len(DATA_MARKERS)], "color": style["color"]}
+    bars = {"xerr" if panel.measured_across else "yerr": error, "elinewidth": style["linewidth"]}
+    drawn = axes.errorbar(x, y, capsize=0.0, zorder=style["zorder"], **look, **bars)
+    if (unsure := hollow_points(values)).any():
+        axes.plot(x[unsure], y[unsure], markerfacecolor="white", zorder=style["zorder"] + 0.5, **look)
+    return (cast(Artist, drawn),)
 
 
 def hollow_points(values: Curve) -> NDArray[np.bool_]:
@@ -191,12 +169,10 @@ def draw_steps(
     """
     x, y, error = curve(dataset, panel, line)
     colour = colour or DATA_COLOURS[index % len(DATA_COLOURS)]
-    bounds = edges(dataset, panel, line)
-    look = {"color": colour, "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["band"]}
-    area = (axes.stairs(y, bounds, fill=True, **look),) if filled else ()
-    steps = axes.stairs(
-        y, bounds, color=colour, linewidth=theme.line, linestyle=style, baseline=None, zorder=_ORDER["data"]
-    )
+    bounds, order = edges(dataset, panel, line), _ORDER["data"]
+    tint: dict[str, Any] = {"color": colour, "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["band"]}
+    area = (axes.stairs(y, bounds, fill=True, **tint),) if filled else ()
+    steps = axes.stairs(y, bounds, color=colour, linewidth=theme.line, linestyle=style, baseline=None, zorder=order)
     if error is not None:
         axes.errorbar(x, y, error, linestyle="none", color=colour, capsize=0.0, zorder=_ORDER["data"])
     return *area, steps
@@ -219,11 +195,8 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
     'solid'
     """
     colours, dashes, width = CURVES[role]
-    return {
-        "color": colours[index % len(colours)],
-        "linestyle": dashes[index % len(dashes)],
-        "linewidth": theme.line * width,
-    }
+    look = {"color": colours[index % len(colours)], "linestyle": dashes[index % len(dashes)]}
+    return look | {"linewidth": theme.line * width}
 
 
 Entry = tuple[tuple[Artist, ...], str]
@@ -234,8 +207,6 @@ _NEAR_THE_GROUND = 930.0
 _ONE_LEVEL = 1.3
 # The axis of a histogram ends where data and theory are below this share of the peak.
 _NEGLIGIBLE = 1e-3
-# More curves of one name than this have one entry in the legend.
-_MOST_ALIKE = 3
 
 
 def draw(
@@ -271,13 +242,56 @@ def draw(
     if panel.kind == "discs":
         return draw_discs(axes, panel, dataset, theme)
     if panel.kind == "atmosphere":
-        return draw_atmosphere(axes, dataset, theme)
+        return draw_atmosphere(axes, dataset, theme, panel.start)
     axes.set_xscale(panel.x_scale)
     axes.set_yscale(panel.y_scale)
     axes.grid(visible=True)
     entries, most = draw_lines(axes, panel, dataset, theme, only)
+    if panel.areas:
+        x, y, _ = curve(dataset, panel, panel.lines[0])
+        for name, sign in (("CAPE", 1.0), ("CIN", -1.0)):
+            area = axes.fill_betweenx(y, np.where(sign * x > 0.0, x, 0.0), zorder=0.8, **AREAS[name])
+            entries.append(((area,), name))
     set_limits(axes, panel, most)
+    draw_guides(axes, panel, theme)
     return entries
+
+
+def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
+    """Draw the guides of a panel, their texts away from its first curve, and mark where its curves begin."""
+    look: dict[str, Any] = {"size": theme.text, "color": FAINT, "textcoords": "offset points", "zorder": 5.0}
+    thin: dict[str, Any] = {"color": FAINT, "linewidth": 0.7 * theme.line, "zorder": 1.4}
+    drawn = [line for line in axes.lines if 0.0 <= line.get_zorder() - _ORDER["data"] < 0.5]
+    curves = [points for points in (np.asarray(line.get_xydata()) for line in drawn) if points.size]
+    gap = 0.25 * theme.text
+    for axis, value, words in panel.guides:
+        low, high = sorted(axes.get_xlim() if axis == "x" else axes.get_ylim())
+        if not low <= value <= high:
+            continue
+        if axis == "x":
+            axes.axvline(value, **thin)
+            axes.annotate(words, (value, 0.0), (gap, gap), xycoords=("data", "axes fraction"), **look)
+            continue
+        axes.axhline(value, **thin)
+        near = curves[0][np.nanargmin(np.abs(curves[0][:, 1] - value))] if curves else (low, value)
+        right = axes.transLimits.transform(axes.transScale.transform(near))[0] < 0.6
+        place, side = ((1.0, -gap), "right") if right else ((0.0, gap), "left")
+        axes.annotate(words, (place[0], value), (place[1], gap), xycoords=("axes fraction", "data"), ha=side, **look)
+    if panel.start and curves:
+        begins = panel.start[0] or min(float(points[0, 0]) for points in curves), panel.start[1]
+        ring: dict[str, Any] = {"markersize": 1.6 * theme.marker, "markerfacecolor": "white", "markeredgecolor": DARK}
+        axes.add_artist(Line2D(begins[:1], begins[1:], marker="o", zorder=4.5, clip_on=False, **ring))
+        axes.annotate("start", begins, (1.5 * theme.marker, gap), **look | {"color": DARK})
+
+
+def _from_start(panel: Panel, line: Line, values: Curve) -> Curve:
+    """Return a curve that begins where the panel says; half a frame from the first on a logarithmic axis."""
+    begins = line.role == "data" or (panel.kind == "profile" and line.role in ("theory", "environment"))
+    if not (panel.start and begins and values.x.size):
+        return values
+    x = panel.start[0] or (0.5 * float(np.nanmin(values.x)) if panel.x_scale == "log" else 0.0)
+    error = None if values.error is None else np.append(0.0, values.error)
+    return Curve(np.append(x, values.x), np.append(panel.start[1], values.y), error)
 
 
 def draw_lines(
@@ -323,11 +337,10 @@ def draw_lines(
         if panel.kind == "histogram" and line.role == "data":
             artists = draw_steps(axes, panel, line, dataset, theme, index)
         else:
-            values = curve(dataset, panel, line)
+            values = _from_start(panel, line, curve(dataset, panel, line))
             artists = draw_line(axes, panel, line, values, theme, index)
             most = max(most, values.x.size)
-        called = [label for _, label in entries]
-        if line.label not in called or [each.label for each in panel.lines].count(line.label) <= _MOST_ALIKE:
+        if line.label not in [label for _, label in entries]:
             entries.append((artists, line.label))
     return entries, most
 
@@ -353,13 +366,14 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
     """
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
-    low, high = axes.dataLim.intervaly
-    if panel.kind == "profile" and panel.y_scale == "log" and low >= high * (1.0 - 1e-9):
+    (left, right), (low, high) = axes.dataLim.intervalx, axes.dataLim.intervaly
+    if panel.x_scale == "log" and right * (1.0 - 1e-9) <= left <= right:
+        axes.set_autoscalex_on(False)
+        axes.set_xlim(left / _ONE_LEVEL, right * _ONE_LEVEL)
+    if panel.y_scale == "log" and high * (1.0 - 1e-9) <= low <= high:
         axes.set_autoscaley_on(False)
         axes.set_ylim(low / _ONE_LEVEL, high * _ONE_LEVEL)
     axes.autoscale_view()
-    if panel.x_scale == "log" and axes.get_xlim()[1] <= axes.get_xlim()[0] * (1.0 + 1e-9):
-        axes.set_xlim(axes.get_xlim()[0] / _ONE_LEVEL, axes.get_xlim()[1] * _ONE_LEVEL)
     if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:
         axes.set_xlim(left=0.0)
     if panel.kind == "histogram":
@@ -373,6 +387,10 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
         top, bottom = axes.dataLim.intervaly
         if _NEAR_THE_GROUND < bottom < 1000.0:
             axes.set_ylim(top=1000.0 * (1000.0 / top) ** 0.02)
+    if panel.x_limits:
+        axes.set_xlim(*panel.x_limits)
+    if panel.y_limits:
+        axes.set_ylim(*panel.y_limits)
     axes.xaxis.set_inverted(panel.x_invert)
     axes.yaxis.set_inverted(panel.y_invert)
 

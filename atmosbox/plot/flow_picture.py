@@ -1,4 +1,4 @@
-"""Air that turns over: its temperature in colours and its wind as arrows, at three instants, above the panels."""
+"""Air that turns over: its temperature in colours and its wind as arrows, at two instants, above the panels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["flow_height", "instants", "put_flow"]
 
 _COLOURS = "inferno"  # dark is cold, light is warm, in print too
 _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
-_BAR = 0.11  # width of the colour bar with its numbers, in widths of the page
+_BAR = 0.125  # width of the colour bar with its numbers, in widths of the page
 _SLOWEST = 0.15  # least speed of the longest arrow, in units of the thermal speed of a molecule
 _ARROWS = 16  # greatest number of arrows along a box
 _AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
@@ -29,25 +29,19 @@ _TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the
 
 
 def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
-    """Return the first and the last frame of three pictures, at the start, in between and at the end, by their titles.
-
-    If there are rolls to the end, the one in between is where they first have half of their greatest speed.
+    """Return the first and the last frame of two pictures, at the start and at the end, by their titles.
 
     Examples
     --------
     >>> wind = ("elapsed_time", np.r_[np.zeros(15), np.arange(15.0)])
     >>> instants(xr.Dataset({"roll_speed": wind}))
-    {'start': (0, 2), 'wind begins': (23, 25), 'end': (28, 30)}
+    {'Start: no wind': (0, 2), 'Warm air rises, cold air sinks': (28, 30)}
     """
     frames = dataset.sizes["elapsed_time"]
     part = max(1, round(_SHARE * frames))
-    speed = dataset["roll_speed"].values
-    smooth = np.convolve(speed, np.ones(part) / part, mode="same")
-    windy = bool((speed[-max(1, frames // 4) :] > 0.0).all())
-    between = int(np.argmax(smooth > 0.5 * smooth.max())) if windy else frames // 2
-    between = min(max(between, part), max(frames - 2 * part, 0))
-    middle = "wind begins" if windy else "half-way"
-    return {"start": (0, part), middle: (between, between + part), "end": (frames - part, frames)}
+    windy = bool((dataset["roll_speed"].values[-max(1, frames // 4) :] > 0.0).all())
+    last = "Warm air rises, cold air sinks" if windy else "End: the air stays at rest"
+    return {"Start: no wind": (0, part), last: (frames - part, frames)}
 
 
 def flow_height(dataset: xr.Dataset, look: Theme) -> float:
@@ -56,12 +50,12 @@ def flow_height(dataset: xr.Dataset, look: Theme) -> float:
         return 0.0
     wide, high = (72.0 * size for size in look.wide)
     across, up = (float(np.ptp(dataset[f"{name}_bnds"].values)) for name in ("distance", "height"))
-    each = 0.9 * (1.0 - _BAR) * wide / 3.0 * up / across
+    each = 0.9 * (1.0 - _BAR) * wide / 2.0 * up / across
     return min(each, _TALLEST * wide if look.grows else _TALLEST_ON_SCREEN * high) + _AROUND * look.text
 
 
 def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> None:
-    """Draw the three pictures in a row, below a distance from the upper end of the page [pt].
+    """Draw the two pictures in a row, below a distance from the upper end of the page [pt].
 
     Parameters
     ----------
@@ -75,7 +69,7 @@ def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> N
     bounds = [dataset[f"{name}_bnds"].values / 1000.0 for name in ("distance", "height")]
     edges = [np.append(each[:, 0], each[-1, 1]) for each in bounds]
     box = room - _AROUND * look.text
-    each = (1.0 - _BAR) * wide / 3.0
+    each = (1.0 - _BAR) * wide / 2.0
     width = min(0.9 * each, box * float(np.ptp(edges[0]) / np.ptp(edges[1])))
     base = 1.0 - (top + 1.5 * look.text + box) / high
     pictures = [_means(dataset, *span) for span in instants(dataset).values()]
@@ -92,14 +86,15 @@ def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> N
         _draw(axes, edges, picture, norm, fastest, look)
         first, last = time[span[0], 0], time[span[1] - 1, 1]
         digits = 0 if last - first >= 1.0 else 1
-        axes.set_title(f"{words}: {first:.{digits}f} to {last:.{digits}f} min", fontsize=look.text, pad=3.0)
+        axes.set_title(words, loc="left", fontsize=look.title, weight="bold", pad=3.0)
         if place:
             axes.set_yticklabels([])
         else:
             axes.set_ylabel("height (km)", fontsize=look.text)
-        key = f", longest arrow {fastest:.0f} m/s" if words == "end" else ""
-        axes.set_xlabel(f"width (km){key}", fontsize=look.text, labelpad=1.0)
-    bar_left = (4.2 * look.text + 3.0 * (each - 0.6 * look.text)) / wide
+        key = f"; longest arrow {fastest:.0f} m/s" if place else ""
+        when = f"{first:.{digits}f} to {last:.{digits}f} min"
+        axes.set_xlabel(f"width (km), {when}{key}", fontsize=look.text, labelpad=1.0)
+    bar_left = (4.2 * look.text + 2.0 * (each - 0.6 * look.text)) / wide
     holder = drawing.add_axes((bar_left, base, 0.012, box / high))
     holder.set_in_layout(False)
     bar = drawing.colorbar(ScalarMappable(norm, _COLOURS), cax=holder)

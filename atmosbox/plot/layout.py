@@ -139,7 +139,7 @@ def put_numbers(measure: TextMeasure, readings: Sequence[Reading], look: Theme, 
 
 
 _TALL = ("profile", "discs", "skewt", "atmosphere")
-_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0, "atmosphere": 1.1}
+_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.9, "skewt": 2.0, "atmosphere": 1.1}
 _TEXT_LINES = 6  # lines above the axes for which a page has room; it grows for more
 _ROUNDS = 3  # of layout and text: the text needs room, and the room decides where lines break
 # Length of the line samples in a legend, their distance from the text, and the gaps between axes, legend and note, all
@@ -446,6 +446,8 @@ def _write_title(measure: TextMeasure, graph: Graph, edge: float, height: float,
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
     """Return the indices of the panels of each column: tall panels alone, other graphs in pairs."""
+    if len(panels) == 2:
+        return [[0], [1]]
     columns: list[list[int]] = []
     for index, panel in enumerate(panels):
         paired = bool(columns) and len(columns[-1]) == 1 and panels[columns[-1][0]].kind not in _TALL

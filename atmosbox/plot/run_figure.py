@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,7 +14,7 @@ from atmosbox.errors import Command, FileError, Option
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer, headlines
-from atmosbox.plot.curve import curve, unit_of
+from atmosbox.plot.curve import curve
 from atmosbox.plot.draw import Entry, draw, hollow_points
 from atmosbox.plot.flow_picture import flow_height, put_flow
 from atmosbox.plot.layout import (
@@ -31,7 +30,6 @@ from atmosbox.plot.layout import (
 )
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.theme import Theme, find, style
-from atmosbox.plot.units import spelled
 from atmosbox.scene.panels import Line, Panel, from_json
 
 
@@ -75,7 +73,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """
     look = find(theme)
     panels = panels_of(dataset)
-    heading = str(dataset.attrs.get("title", "")) if look.heading else ""
+    heading = str(dataset.attrs.get("title", ""))
     small = footer(dataset) + explanation(dataset, panels)
     readings = [reading for each in headlines(dataset, panels) for reading in each]
     height = flow_height(dataset, look)
@@ -258,7 +256,7 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         boxes = _HIGH * wide if look.grows else _HIGH_ON_SCREEN * high
         drawing = blank(look.wide, look)
         measure = TextMeasure(drawing)
-        top = put_heading(measure, str(dataset.attrs.get("title", "")) if look.heading else "", look)
+        top = put_heading(measure, str(dataset.attrs.get("title", "")), look)
         top += put_numbers(measure, readings, look, top)
         if look.grows:
             drawing.set_figheight((high + top + boxes) / 72.0)
@@ -288,7 +286,7 @@ def _put_boxes(
     high = 72.0 * float(measure.figure.get_figheight())
     each, top = (1.0 - _BAR) / len(pictures), 1.0 - (room[0] + 0.5 * look.text) / high
     frames = [round(part * (len(held.time) - 1)) for part in _INSTANTS]
-    said = [_said(dataset, held, moment) for moment in frames]
+    said = [instant(dataset, held, moment) for moment in frames]
     lines = max(text.count("\n") for text in said) + 1
     bottom = 1.0 - (room[1] - 2.2 * look.small) / high
     below = top - (1.35 * lines + 0.3) * look.text / high
@@ -299,19 +297,3 @@ def _put_boxes(
         picture.fit()
         picture.artists(moment)
     speed_bar(measure.figure, pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
-
-
-def _said(dataset: xr.Dataset, held: Molecules, moment: int) -> str:
-    """Return the time of a frame and, if a panel shows a profile measured frame by frame, its values in the frame."""
-    time = instant(dataset, held, moment)
-    for panel in panels_of(dataset):
-        for line in panel.lines:
-            in_time = all(name in dataset and dataset[name].dims == ("elapsed_time",) for name in (line.x, line.y))
-            if panel.kind not in ("profile", "skewt") or line.role != "data" or line.minus or not in_time:
-                continue
-            x, y, _ = curve(dataset, panel, line)
-            if x.size == len(held.time) and np.isfinite(x[moment] + y[moment]):
-                units = [spelled(unit_of(dataset, panel, axis)) for axis in "xy"]
-                state = [f"{value:.{int(abs(value) < 100.0)}f}" for value in (x[moment], y[moment])]
-                return f"{time}\n{state[0]} {units[0]},  {state[1]} {units[1]}".replace("-", "−")
-    return time

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from atmosbox.errors import FileError
 from atmosbox.plot.curve import Curve, curve, read
 from atmosbox.plot.draw import Entry, draw_lines
-from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, DARK, FAINT, PALE, Theme
+from atmosbox.plot.theme import AREAS, DARK, FAINT, PALE, Theme
 from atmosbox.plot.units import convert
 from atmosbox.scene.panels import Line, Panel
 
@@ -187,10 +187,8 @@ def shade_energy(
     ):
         if not (sign * warmer[part] > 0.0).any():
             continue
-        look: dict[str, Any] = {"facecolor": AREA_COLOURS[name], "hatch": AREA_HATCHES[name]}
-        look |= {"edgecolor": FAINT, "linewidth": 0.0, "alpha": 0.7}
-        shade(pressure[part], around[part], parcel[part], zorder=order, **look)
-        entries.append(((Patch(**look),), name))
+        shade(pressure[part], around[part], parcel[part], zorder=order, **AREAS[name])
+        entries.append(((Patch(**AREAS[name]),), name))
     return entries
 
 
@@ -383,7 +381,20 @@ def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
     """
     bottom, top = _pressures(axes)
     axes.set_ylim(bottom, top)
-    _draw_background(skewed, bottom, top, theme)
+    with warnings.catch_warnings(action="ignore"):
+        from metpy.units import units
+
+        def between(upper: float) -> Any:
+            return units.Quantity(np.geomspace(bottom, max(top, upper), 60), "hPa")
+
+        look = {"colors": PALE, "alpha": 1.0, "linewidths": theme.line / 2.4, "zorder": 0.5}
+        skewed.plot_dry_adiabats(units.Quantity(_DRY + 273.15, "K"), between(top), linestyles="solid", **look)
+        if bottom > _HIGHEST_MOIST:
+            dashes, start = (0.0, (6.0, 3.0)), units.Quantity(_MOIST, "degC")
+            skewed.plot_moist_adiabats(start, between(_HIGHEST_MOIST), linestyles=[dashes], **look)
+        if bottom > _MIXING_TOP:
+            dots = (0.0, (1.0, 2.5))
+            skewed.plot_mixing_lines(_MIXING / 1e3, between(_MIXING_TOP), linestyles=[dots], **look)
 
 
 def slender(theme: Theme) -> Theme:
@@ -428,22 +439,3 @@ def _pressures(axes: Axes) -> tuple[float, float]:
         ground = max(ground, 1000.0)
     highest = min(highest, ground / _LEAST_RATIO)
     return ground * (ground / highest) ** _END, highest * (highest / ground) ** _END
-
-
-def _draw_background(skewed: Any, bottom: float, top: float, theme: Theme) -> None:
-    """Draw dry adiabats, moist adiabats and lines of mixing ratio, paler than any curve."""
-    with warnings.catch_warnings(action="ignore"):
-        from metpy.units import units
-
-        def between(upper: float) -> Any:
-            return units.Quantity(np.geomspace(bottom, upper, 60), "hPa")
-
-        look = {"colors": PALE, "alpha": 1.0, "linewidths": theme.line / 2.4, "zorder": 0.5}
-        skewed.plot_dry_adiabats(units.Quantity(_DRY + 273.15, "K"), between(top), linestyles="solid", **look)
-        if bottom > _HIGHEST_MOIST:
-            dashes = (0.0, (6.0, 3.0))
-            start = units.Quantity(_MOIST, "degC")
-            skewed.plot_moist_adiabats(start, between(max(top, _HIGHEST_MOIST)), linestyles=[dashes], **look)
-        if bottom > _MIXING_TOP:
-            dots = (0.0, (1.0, 2.5))
-            skewed.plot_mixing_lines(_MIXING / 1e3, between(max(top, _MIXING_TOP)), linestyles=[dots], **look)

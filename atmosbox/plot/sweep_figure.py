@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.plot.caption import number, stated
+from atmosbox.plot.caption import stated
 from atmosbox.plot.coexistence_figure import draw_coexistence, is_coexistence
 from atmosbox.plot.run_figure import figure as figure_of_panels
 from atmosbox.plot.theme import DATA_COLOURS, find, style
-from atmosbox.plot.units import convert, of_difference, spelled
+from atmosbox.plot.units import convert, spelled
 from atmosbox.scene.panels import Line, Panel, to_json
 
 MOST_PANELS = 4
@@ -198,22 +198,11 @@ def _panels(
                 said = "theory, joined" if other is None or len(other.words) > _MOST_NAMED else f"theory, {label}"
                 theory.append(Line(across.dim, f"{stem}_theory", said, "theory"))
         lines = (*data, *_different(theory, flat))
-        attributes = dataset[name].attrs
-        label = str(attributes.get("long_name", name))
-        made.append(
-            Panel(
-                "line",
-                label[:1].upper() + label[1:],
-                lines,
-                x_label=across.label,
-                y_label=label,
-                x_unit=across.shown,
-                y_unit=str(attributes.get("display_units", "")),
-                x_scale="log" if across.geometric else "linear",
-                y_scale="log" if _spans(np.concatenate([flat[line.y].values for line in lines])) else "linear",
-                note=_largest_difference(dataset, name, settings),
-            )
-        )
+        label, unit = (str(dataset[name].attrs.get(key, "")) for key in ("long_name", "display_units"))
+        label = label or name
+        title = label[:1].upper() + label[1:]
+        scales = ["log" if log else "linear" for log in (across.geometric, _spans(flat, lines))]
+        made.append(Panel("line", title, lines, across.label, label, across.shown, unit, *scales))
     return flat, tuple(made)
 
 
@@ -228,31 +217,8 @@ def _different(theory: list[Line], flat: xr.Dataset) -> list[Line]:
     return [replace(theory[0], label="theory, joined")]
 
 
-def _spans(values: Floats) -> bool:
-    """Tell whether all values are positive and span more than a factor of 100."""
+def _spans(flat: xr.Dataset, lines: tuple[Line, ...]) -> bool:
+    """Tell whether the numbers of some lines are positive and span a wide range."""
+    values = np.concatenate([flat[line.y].values for line in lines])
     seen = values[np.isfinite(values)]
     return bool(seen.size and seen.min() > 0.0 and seen.max() > _WIDE * seen.min())
-
-
-def _largest_difference(dataset: xr.Dataset, name: str, settings: list[_Setting]) -> str:
-    """Return text with the difference from theory where it is most standard errors; empty without theory or errors."""
-    answer = _theory(dataset, name)
-    if answer is None or f"{name}_se" not in dataset:
-        return ""
-    attributes = dataset[name].attrs
-    unit = str(attributes.get("units", "1"))
-    shown = str(attributes.get("display_units", unit))
-    misfit = dataset[name].values - answer
-    error = dataset[f"{name}_se"].values
-    known = np.isfinite(misfit) & np.isfinite(error) & (error > 0.0)
-    if not known.any():
-        return ""
-    sizes = np.where(known, np.abs(misfit) / np.where(known, error, 1.0), -1.0)
-    place = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
-    values = [float(convert(each[place], unit, shown, name=name, difference=True)) for each in (misfit, error)]
-    at = dict(zip(map(str, dataset[name].dims), place, strict=True))
-    words = [(each, each.words[int(at[each.dim])]) for each in settings]
-    where = [word if each.numeric and " " in word else f"{each.name} {word}" for each, word in words]
-    spelling = of_difference(shown)
-    units = "" if spelling == "1" else f" {spelled(spelling)}"
-    return f"largest difference (at {', '.join(where)}) = {number(*values, signed=True)}{units}"

@@ -27,20 +27,22 @@ THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
 _THEORY_DASHES = ((0.0, (5.0, 2.0)), (0.0, (1.2, 1.2)), (0.0, (9.0, 2.0, 2.0, 2.0, 2.0, 2.0)))
 ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)
 _ENVIRONMENT_DASHES = ((0.0, (7.0, 2.0, 1.5, 2.0)), (0.0, (1.5, 1.5)))
-# A reference curve is broad and pale and lies under the others: where curves coincide, each is still seen.
+# A reference curve lies under the others: where curves coincide, dashed ones on top let it be seen.
 REFERENCE_COLOURS = (_ORANGE, _SKY)
 CURVES: dict[str, tuple[tuple[str, ...], tuple[Any, ...], float]] = {
-    "data": (DATA_COLOURS, ("solid",), 1.0),
-    "theory": (THEORY_COLOURS, _THEORY_DASHES, 1.1),
+    "data": (DATA_COLOURS, ("solid",), 1.6),
+    "theory": (THEORY_COLOURS, _THEORY_DASHES, 0.8),
     "environment": (ENVIRONMENT_COLOURS, _ENVIRONMENT_DASHES, 1.0),
-    "reference": (REFERENCE_COLOURS, ("solid",), 2.6),
+    "reference": (REFERENCE_COLOURS, ("solid",), 1.7),
 }
 """Colours and dashes of the curves of each role, and their width in units of the theme's."""
 FIELD_COLOURS = "viridis"
 AGREES = _GREEN
 # Areas differ by colour and by hatching; the background lines of a diagram are paler than any curve.
-AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}
-AREA_HATCHES = {"CAPE": "////", "CIN": "\\\\\\\\"}
+AREAS: dict[str, dict[str, Any]] = {
+    name: {"facecolor": colour, "hatch": hatch, "edgecolor": FAINT, "linewidth": 0.0, "alpha": 0.7}
+    for name, colour, hatch in (("CAPE", _ORANGE, "////"), ("CIN", _SKY, "\\\\\\\\"))
+}
 PALE = "#c4c4c4"
 
 
@@ -60,8 +62,6 @@ class Theme:
         Width of lines and size of markers [pt].
     dots_per_inch : float
         Resolution on a screen.
-    heading : bool
-        Whether the title of the run is written above the panels; a figure on a page has a caption for it.
     grows : bool
         Whether the figure becomes higher if there is much text above its panels; a page allows it, a slide does not.
 
@@ -81,15 +81,12 @@ class Theme:
     line: float
     marker: float
     dots_per_inch: float
-    heading: bool
     grows: bool
 
 
 THEMES = {
-    "notes": Theme("notes", (3.5, 3.5), (7.2, 4.5), 8.5, 9.5, 8.0, 1.2, 3.5, 150.0, heading=False, grows=True),
-    "slides": Theme(
-        "slides", (40 / 3, 7.5), (40 / 3, 7.5), 16.0, 18.0, 12.0, 2.4, 7.0, 96.0, heading=True, grows=False
-    ),
+    "notes": Theme("notes", (3.5, 3.5), (7.2, 4.5), 8.5, 9.5, 8.0, 1.2, 3.5, 150.0, grows=True),
+    "slides": Theme("slides", (40 / 3, 7.5), (40 / 3, 7.5), 16.0, 18.0, 12.0, 2.4, 7.0, 96.0, grows=False),
 }
 
 

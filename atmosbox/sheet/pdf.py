@@ -147,7 +147,7 @@ def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
 
     width, height = PAPERS[paper]
     stream = io.BytesIO()
-    title = sheet.title + (": answers" if sheet.answers else "")
+    title = sheet.title + (" Answers" if sheet.answers else "")
     document = SimpleDocTemplate(
         stream, pagesize=(width, height), leftMargin=MARGIN, rightMargin=MARGIN, topMargin=0.85 * MARGIN,
         bottomMargin=FOOT, title=title, author="atmosbox", subject=f"{sheet.scene}: {sheet.about}", creator="atmosbox",

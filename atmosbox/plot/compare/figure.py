@@ -299,8 +299,7 @@ def save(
 
 def drawn(datasets: Sequence[xr.Dataset], names: Naming, theme: str) -> tuple[Figure, str]:
     """Return the figure of several runs, and its title."""
-    scenes = dict.fromkeys(str(dataset.attrs.get("title", "")) for dataset in datasets)
-    title = spoken(f"{' and '.join(scenes)}: {names.title}")
+    title = spoken(f"{' and '.join(dict.fromkeys(names.scenes))}: {names.title}")
     return figure(datasets, [spoken(label) for label in names.labels], title, theme), title
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,9 +42,10 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
         Label of the adiabat.
     """
     cloud = ascent.base > 1.02 * ascent.top_pressure
-    base = (Line("adiabat_temperature", "cloud_base_theory", "cloud base, theory", "reference"),) if cloud else ()
+    low, base = ascent.pressure / 100.0, ascent.base / 100.0
+    start = ascent.temperature - 273.15, low
     return (
-        atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"),
+        replace(atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"), start=start),
         Panel(
             "profile",
             "A kink at the cloud base" if cloud else "Too dry for a cloud",
@@ -52,7 +54,6 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
                 Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
                 Line("dry_air_adiabat_temperature", "parcel_pressure", "without condensation", "reference"),
                 Line("environment_temperature", "environment_pressure", "environment", "environment"),
-                *base,
             ),
             x_label="temperature",
             x_unit="degC",
@@ -64,6 +65,10 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
             y_unit="hPa",
             y_scale="log",
             y_invert=True,
+            start=start,
+            # so that the kink is seen, a fifth of the axis lies below it
+            y_limits=(low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)) if cloud else (),
+            guides=(("y", base, "cloud base, theory"),) if cloud else (),
         ),
         Panel(
             "profile",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from atmosbox.scene.panels.line import Line
 from atmosbox.scene.panels.panel import Panel
 
@@ -19,6 +21,8 @@ def over_time(
     log: bool = False,
     parts: int = 0,
     headline: str = "",
+    start: float | None = None,
+    **others: Any,
 ) -> Panel:
     """Return a panel of curves over time.
 
@@ -40,6 +44,10 @@ def over_time(
         Number of equal parts of the axis of time over which the curves are averaged; 0 draws every value.
     headline
         Name of the number that is written into the panel; empty for none.
+    start
+        The value with which the measured curves begin at time 0, in ``unit``.
+    others
+        Further fields of the panel.
 
     Examples
     --------
@@ -60,4 +68,6 @@ def over_time(
         x_scale="log" if log else "linear",
         averages=parts,
         headlines=(headline,) if headline else (),
+        start=() if start is None else (0.0, start),
+        **others,
     )

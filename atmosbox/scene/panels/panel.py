@@ -70,6 +70,15 @@ class Panel:
     marks : tuple of str
         Names of single numbers of the file, pressures that are marked in a ``skewt`` panel if the run has found
         them. CAPE is shaded between the marks "lfc" and "el", CIN below "lfc".
+    start : tuple of float
+        Where the curves begin, before the first frame: x and y in the units of the axes. The curves of a ``profile``
+        and the measured curves of a ``line`` panel are drawn from there; 0 is the left end of a logarithmic axis.
+    guides : tuple of (axis, value, text)
+        Thin lines across the graph, each at a value of one axis ("x" or "y"), with a text beside it that may be empty.
+    x_limits, y_limits : tuple of float
+        The two ends of an axis, in its unit; empty for an axis that shows all values.
+    areas : bool
+        Whether the area between the first curve of a ``profile`` and zero is shaded: positive as CAPE, negative as CIN.
 
     Raises
     ------
@@ -98,6 +107,11 @@ class Panel:
     note: str = ""
     headlines: tuple[str, ...] = ()
     marks: tuple[str, ...] = ()
+    start: tuple[float, ...] = ()
+    guides: tuple[tuple[str, float, str], ...] = ()
+    x_limits: tuple[float, ...] = ()
+    y_limits: tuple[float, ...] = ()
+    areas: bool = False
 
     def __post_init__(self) -> None:
         check_choice("panel", "kind", self.kind, KINDS)
@@ -118,6 +132,11 @@ class Panel:
             values = getattr(self, name)
             if not isinstance(values, tuple) or not all(isinstance(value, kind) for value in values):
                 raise ValueError(f"{name} of the panel {self.title!r} is no tuple of {kind.__name__}.")
+        for name in ("start", "x_limits", "y_limits"):
+            if len(getattr(self, name)) not in (0, 2):
+                raise ValueError(f"{name} of the panel {self.title!r} is {getattr(self, name)!r}, and has two numbers.")
+        if any(len(guide) != 3 or guide[0] not in ("x", "y") for guide in self.guides):
+            raise ValueError(f"a guide of the panel {self.title!r} is not an axis, a value and a text.")
         if (self.kind == "discs") == bool(self.lines):
             wanted = "has no lines" if self.kind == "discs" else "needs at least one line"
             raise ValueError(f"the panel {self.title!r} is of the kind {self.kind!r}, which {wanted}.")

@@ -78,12 +78,13 @@ def from_json(text: str) -> tuple[Panel, ...]:
 
 def _panel(record: object) -> Panel:
     values = _values("panel", record, Panel)
-    for name in ("lines", "headlines", "marks"):
+    for name in ("lines", "headlines", "marks", "start", "guides", "x_limits", "y_limits"):
         if not isinstance(values.setdefault(name, []), list):
             raise ValueError(f"{name} of a panel are no list.")
     values["lines"] = tuple(Line(**_values("line", item, Line)) for item in values["lines"])
-    for name in ("headlines", "marks"):
+    for name in ("headlines", "marks", "start", "x_limits", "y_limits"):
         values[name] = tuple(values[name])
+    values["guides"] = tuple(map(tuple, values["guides"]))
     return Panel(**values)
 
 
