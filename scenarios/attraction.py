@@ -2,7 +2,7 @@
 
 Prescribed are the size of a molecule of argon and its attraction to neighbours: no liquid, no vapour pressure, no
 latent heat, no surface. Two molecules that come within one and a half diameters gain the depth of a square well as
-kinetic energy; to part, they must give it back. In a dense, cold vapour that is enough: they gather in drops, the
+kinetic energy; to separate, they must give it back. In a dense, cold vapour that is enough: they gather in drops, the
 drops merge, and the energy released warms the vapour.
 
 Modelled: hard spheres with a square well of range 1.5, whose diameter and depth give it the critical point of argon

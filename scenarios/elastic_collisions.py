@@ -1,8 +1,8 @@
 """Discs of unlike mass collide in a plane, and share their energy.
 
 Sixty pucks on a frictionless table, light and heavy, start at one speed: the heavy ones carry most of the
-energy. Every collision keeps momentum and energy to the last digit that a computer holds, and yet, by
-nothing but collisions, light and heavy discs come to the same mean energy. The light ones end up fast. It
+energy. Every collision conserves momentum and energy to the last digits of a computer. Collisions alone
+bring light and heavy discs to the same mean energy, so the light ones are fast in the end. This
 is why hydrogen flies faster than oxygen in the same air.
 
 Modelled: smooth elastic discs in one plane, exact collisions, smooth walls. Left out: friction, spin,

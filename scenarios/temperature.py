@@ -1,9 +1,9 @@
 """What temperature is: the motion of molecules.
 
-Molecules of real air at real density, in a cube some nanometres wide whose six walls are kept warm. They
-start cold; the walls send every molecule that hits them back at their own temperature, and within a
-fraction of a nanosecond the gas is as warm as they. The speeds are then those of Maxwell, and their impacts
-on the walls add up to the pressure n k T Z.
+Molecules of air at their real density fly in a cube some nanometres wide, whose six walls are warm. They start
+cold. A molecule that hits a wall leaves it with a random speed that belongs to the temperature of the wall. So the
+gas becomes as warm as the walls within a fraction of a nanosecond. The speeds then follow Maxwell's law, and the
+impacts on the walls add up to the pressure n k T Z.
 
 Modelled: hard spheres of the mass and the diameter of air, fully accommodating walls. Left out: gravity
 (over twenty nanometres it does nothing), rotation (it does not change how fast molecules fly), and that
@@ -18,22 +18,10 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import EqualSpeeds, HeatBath, Maxwell, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    Speeds,
-    setting,
-)
+from atmosbox.scene import Air, EngineChoice, Headline, Scale, SceneSettings, Series, Setup, Speeds, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import wall_temperature
-from atmosbox.scene.panels import over_time
+from atmosbox.scene.panels import Line, Panel, over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -77,21 +65,22 @@ class Settings(SceneSettings):
 
 
 def _gas(settings: Settings, *, ideal: bool) -> tuple[Scale, law.WalledGas]:
-    """Return the scale, and the gas when it is as warm as the walls."""
+    """Return the units of the engine in SI, and theory's gas, as warm as the walls; it is ideal on `dsmc`."""
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * settings.si.temperature)
     return scale, law.walled_gas(settings.si.pressure / scale.pressure, settings.molecules, ideal=ideal)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
-    """Return the cold gas between warm walls."""
+    """Return the box: cold molecules at random places between warm walls, and what is measured of them."""
     si, n = settings.si, settings.molecules
     scale, gas = _gas(settings, ideal=engine.ideal)
-    length = (rounded(gas.side) + 1.0,) * 3
+    length = (rounded(gas.side) + 1.0,) * 3  # centres reach all but a radius at each wall; the unit is a diameter
     cold = scale.reduced_temperature(si.start_temperature)
     speeds = Maxwell(cold) if settings.start == "maxwell" else EqualSpeeds(math.sqrt(3.0 * cold))
     start = Start(n, (speeds, Scattered()))
     parcel = engine.begin(start, length=length, walls=(HeatBath(1.0),) * 6, seed=settings.seed)
     knob = wall_temperature(parcel, scale, settings, low=-200.0, high=WARMEST)
+    # bins of one width, up to a speed that hardly any molecule exceeds where the walls are warmest
     bins = math.ceil(36 * math.sqrt((knob.high + 273.15) / si.temperature))
     shares = Speeds(np.linspace(0.0, 0.125 * bins, bins + 1))
     facts = {
@@ -126,6 +115,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     warm = dataset.isel(elapsed_time=slice(SETTLE, None))
     if warm.sizes["elapsed_time"] < 41:
         return ()
+    # collisions of a molecule in a frame: each collision is one of two molecules
     frame = float(warm.elapsed_time[-1] - warm.elapsed_time[0]) * 1e-9 / (warm.sizes["elapsed_time"] - 1)
     met = np.diff(warm.collision_count.values) * 2.0 / settings.molecules / frame
     measured = warm.air_temperature.values, warm.air_pressure.values, warm.mean_molecular_speed.values, met

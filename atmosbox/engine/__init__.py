@@ -1,17 +1,19 @@
 """The engine: colliding molecules, and nothing of meteorology.
 
-Read `core` first, then `exact`; the other folders when you need them. Each lists its files in reading order.
+Read `core` first, then `exact`; the other folders when you need them. Each lists its files in the order in which to
+read them; docs/engine.md leads through them in an afternoon.
 
 `core`     molecules, walls, schedules, random numbers, collision laws, tallies, refusals
 `start`    positions and velocities of the molecules at the start
 `exact`    event-driven: time jumps from one event to the next; and a slow reference
 `wells`    molecules that attract each other, event-driven too
 `liquid`   condensed water: as a reservoir, a mist, drops or a pool
-`stepped`  in time steps, the way of teaching applets: all molecules move, then those that overlap collide
-`dsmc`     direct simulation Monte Carlo
+`stepped`  in equal time steps, as in teaching applets: all molecules move, then those that overlap collide
+`dsmc`     direct simulation Monte Carlo: all molecules move, then pairs drawn at random collide
 
-Everything is in reduced units; the engine knows no kelvin, no file and no scenario. The names below are imported when
-they are first used, so that a program that needs only a schedule does not wait for the compiler.
+Everything is in reduced units: a scene chooses the units of length, mass and energy, and the engine knows neither
+kelvins nor files nor scenes. The names below are imported when they are first used: a program that needs only some of
+them does not wait for numba.
 """
 
 import importlib

@@ -48,9 +48,9 @@ class Headline:
     value, standard_error
         The measurement and its statistical error [unit].
     theory
-        The closed-form answer [unit]; None if there is none.
+        The answer of theory [unit]; None if there is none.
     tolerance
-        How far the model itself may be from the textbook, in addition to the statistical error [unit].
+        Known error of the model, in addition to the statistical error [unit].
     reason
         Why the tolerance has this size.
     unit

@@ -15,9 +15,9 @@ __all__ = ["earlier_root", "quadratic", "resolve_contact", "share_energy"]
 def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
     r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
-    They touch when :math:`|r + v t|^2 = \sigma^2`: :math:`b = r \cdot v` is below zero while they approach, and
-    :math:`c = r^2 - \sigma^2`. The discriminant is formed with min(b, 0): it is not above zero for nearly all pairs
-    that miss, so that one test rejects them.
+    They touch when :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, below zero while they approach, and
+    :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0): then a pair that moves apart has none above
+    zero either, unless it overlaps, and one test rejects nearly all pairs that do not meet.
 
     Parameters
     ----------
@@ -37,14 +37,15 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
 
 @kernel(early=True)
 def earlier_root(discriminant, b, c):
-    """Return the earlier root of `quadratic`, which is the contact [time], and 0 if it is past.
+    """Return the time until two molecules touch: the earlier root of `quadratic` [time from now], 0 if it is past.
 
-    Needs a discriminant above and a b below zero; otherwise the two miss each other or move apart.
+    Call it only if the discriminant is above zero and b below zero: otherwise the two never touch.
 
     Notes
     -----
-    The root is written as c / (-b + sqrt(d)), which keeps its digits when the two nearly touch. A pair that overlaps
-    by rounding and still approaches touches at once; a pair that moves apart never touches [1]_.
+    The usual formula, (-b - sqrt(d)) / v^2, subtracts nearly equal numbers when the two nearly touch, and loses
+    digits; c / (-b + sqrt(d)) is the same root without a difference. A pair that overlaps by rounding touches at once
+    if it approaches, and never if it moves apart [1]_.
 
     References
     ----------
@@ -81,8 +82,8 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 
     Notes
     -----
-    Dividing by the actual \|r\|^2, not by sigma^2, conserves energy to rounding, although the distance at
-    contact equals sigma to rounding only.
+    The distance at contact equals sigma only up to rounding. Dividing by the actual \|r\|^2, and not by sigma^2,
+    conserves the energy to the last digits nevertheless.
 
     Examples
     --------
@@ -92,6 +93,7 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
     2.0
     """
     b = rx * vx + ry * vy + rz * vz
+    # the change of velocity is f times the vector between the centres
     f = -(2.0 * other_mass / (mass + other_mass)) * b / (rx * rx + ry * ry + rz * rz)
     return f * rx, f * ry, f * rz
 
@@ -100,9 +102,10 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 def share_energy(energy, dimensions, rotation, other_rotation, state):
     r"""Share the energy of a contact between relative motion and the two rotations (Larsen and Borgnakke [1]_).
 
-    The shares are in the ratio of gamma variates of shape :math:`(d + 1)/2`, :math:`\zeta_i/2` and
-    :math:`\zeta_j/2`, with :math:`\zeta` rotational degrees of freedom. In space the shape for the relative motion is
-    2, not 3/2, because hard spheres collide at a rate proportional to their relative speed; so detailed balance holds.
+    The shares are in the ratio of three gamma variates, of shapes :math:`(d + 1)/2` for the relative motion and
+    :math:`\zeta_i/2`, :math:`\zeta_j/2` for the rotations, with :math:`\zeta` rotational degrees of freedom. In space
+    the first shape is 2, and not 3/2 as for a molecule at any moment: hard spheres collide at a rate proportional to
+    their relative speed, so fast pairs collide more often. With this shape detailed balance holds.
 
     Parameters
     ----------
@@ -130,7 +133,7 @@ def share_energy(energy, dimensions, rotation, other_rotation, state):
     >>> round(sum(share_energy(3.0, 3.0, 2.0, 2.0, np.array([1], np.uint64))), 12)
     3.0
     """
-    a = gamma(dimensions + 1.0, state)
+    a = gamma(dimensions + 1.0, state)  # gamma takes twice the shape: the number of degrees of freedom
     b = gamma(rotation, state)
     c = gamma(other_rotation, state)
     scale = energy / (a + b + c)

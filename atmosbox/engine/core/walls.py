@@ -1,10 +1,10 @@
 r"""The laws of the walls: specular, periodic, heat bath and piston.
 
 A **specular** wall reverses the normal velocity. A **periodic** pair of walls is no wall: a molecule that leaves on
-one side enters on the other. A **heat bath** emits the molecule with a new velocity, drawn at the bath's temperature:
-the normal velocity follows a Rayleigh distribution, because fast molecules arrive more often, :math:`p(v) \propto v
-\exp(-m v^2 / 2 k T)`; the tangential ones are Gaussian. A **piston** is a specular wall that moves at velocity u:
-:math:`v' = -v + 2 u`, which does work on the molecules.
+one side enters on the other. A **heat bath** gives the molecule a new velocity, drawn at random at the temperature of
+the wall. Its normal velocity follows Rayleigh's law, :math:`p(v) \propto v \exp(-m v^2 / 2 k T)`: the factor v is there
+because fast molecules hit a wall more often, and must leave it as often. The two tangential velocities are Gaussian. A
+**piston** is a specular wall that moves at velocity u: :math:`v' = -v + 2 u`. It does work on the molecules.
 """
 
 import math
@@ -49,14 +49,14 @@ class Periodic:
 
 @dataclass(frozen=True)
 class HeatBath:
-    """A wall that emits molecules at its own temperature.
+    """A wall that a molecule leaves with a random velocity, at the temperature of the wall.
 
     Parameters
     ----------
     kT
         Temperature of the wall [energy], a number or a schedule.
     accommodation
-        Fraction of the molecules, 0 to 1, that the wall re-emits at its temperature; it reflects the others.
+        Share of the hits, 0 to 1, after which a molecule leaves at the temperature of the wall; others are specular.
     """
 
     kT: float | Schedule
@@ -107,6 +107,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
         raise RefusedError(f"{len(walls)} walls are given: give six, {', '.join(WALL_NAMES)}")
     laws = _Laws()
     velocity = 0.0
+    # each law is checked and becomes a number, with its accommodation and the corners of its schedule
     for name, wall in zip(WALL_NAMES, walls, strict=True):
         corners: list[tuple[float, float]] = []
         accommodation = 0.0
@@ -148,6 +149,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
         if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
             low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
             raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
+    # the schedules of all walls stand in one array; `start` tells where that of each wall begins
     flat = [corner for corners in laws.corners for corner in corners]
     start = np.concatenate([[0], np.cumsum([len(corners) for corners in laws.corners])])
     return Walls(
@@ -172,6 +174,7 @@ def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     >>> wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0)
     2.0
     """
+    # constant before the first corner and after the last, linear between two corners
     first = walls.schedule[wall]
     last = walls.schedule[wall + 1] - 1
     if last == first or time <= walls.schedule_time[first]:
@@ -222,6 +225,7 @@ def resolve_wall_hit(wall, time, velocity, spin, kind, walls, planar, state):
     elif law != SPECULAR and uniform(state) < walls.accommodation[wall]:
         kT = wall_kT(walls, wall, time)
         thermal_speed = math.sqrt(kT / mass)
+        # away from the wall: Rayleigh's law, from one uniform number; along the wall: two Gaussian numbers
         outward = 1.0 if wall & 1 == 0 else -1.0
         went = outward * thermal_speed * math.sqrt(-2.0 * log_of_normal(uniform(state)))
         first, second = gaussian_pair(state)

@@ -1,10 +1,10 @@
 r"""Direct simulation Monte Carlo: molecules fly freely for a step, then collide with random partners nearby.
 
-In a dilute gas it matters only that molecules collide at the right rate, with partners from the same place.
-So the method does not compute which molecules hit each other: cells, smaller than a mean free path, hold some ten
-molecules each, and after every step of free flight, shorter than a mean free time, pairs are drawn within each cell
-[1]_. A pair with relative speed c sweeps the volume :math:`\pi\sigma^2 c\,\Delta t` during the step, so it collides
-with probability
+In a dilute gas it matters only that molecules collide at the right rate, with partners from the same place. So this
+method does not compute which molecules hit each other. The box is divided into cells, smaller than a mean free path,
+with some ten molecules each. After every step of free flight, shorter than a mean free time, pairs are drawn at random
+within each cell [1]_. During a step one molecule of a pair with relative speed c sweeps the volume
+:math:`\pi\sigma^2 c\,\Delta t`, so the pair collides with the probability
 
 .. math:: P = \frac{\pi \sigma^2 c\, \Delta t}{V_{cell}}.
 
@@ -12,12 +12,12 @@ Testing all pairs would cost the square of their number. Bird's *no time counter
 
 .. math:: \frac{n (n - 1)}{2} \frac{\pi \sigma^2 c_{max}\, \Delta t}{V_{cell}}
 
-of them and accepts each with probability :math:`c / c_{max}`, which gives the same rates. A collision keeps the
-momentum and energy of its pair to rounding and turns the relative velocity to any direction, as for spheres
-whose impact parameter is random. Molecules have no excluded volume: the gas is ideal.
+of them, with a speed :math:`c_{max}` that no pair exceeds, and accepts each with probability :math:`c / c_{max}`, which
+gives the same rates. A collision conserves the momentum and energy of its pair, and turns the relative velocity to a
+random direction, as for spheres that meet off centre at random. Molecules have no excluded volume: the gas is ideal.
 
-Random numbers are keyed by seed, step and cell: those of a cell do not depend on other cells, and so the
-run is the same for any number of threads.
+The random numbers of a cell follow from seed, step and cell, and not from those of other cells: so a run is the same
+for any number of threads.
 
 References
 ----------
@@ -58,7 +58,7 @@ from atmosbox.engine.dsmc.streaming import WAITS, Axis, bounce, fall, fold, glid
 __all__ = ["Resolution", "densest_layer", "numbers_of_cells", "specialise"]
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_SHARED = 8  # number of steps after which cells are shared anew among threads; results do not depend on it
+_SHARED = 8  # number of steps after which cells are shared again among threads; results do not depend on it
 
 
 class Resolution(NamedTuple):
@@ -124,6 +124,7 @@ def _move(thread, first, last, count, step, air, features):
     round_z = Axis(0.0, box.length_z, per_z, nz - 1, nx * ny)
     smooth_x = law[0] == SPECULAR and law[1] == SPECULAR
     smooth_y = law[2] == SPECULAR and law[3] == SPECULAR
+    # a block of molecules at a time, so that its data stay in the cache of the processor
     for b in range(first, last, BLOCK):
         e = min(b + BLOCK, last)
         x, y, z, cell = columns.x[b:e], columns.y[b:e], columns.z[b:e], columns.cell[b:e]
@@ -153,6 +154,7 @@ def _move(thread, first, last, count, step, air, features):
         else:
             turn_round(y, vy, dt, mark, round_y, cell)
         marked = np.uint32(0)
+        # few molecules are marked: those that hit a wall in this step, or wait at one, are treated one by one
         for q in range(e - b):  # writes a list without a branch
             queue[marked] = q
             marked += np.uint32(mark[q] != 0)
@@ -210,9 +212,10 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
 
     @kernel(entry=True, allocates=parallel, parallel=parallel)
     def march(columns, grid, gas, box, walls, workspace, tries, run):
-        """Advance by some steps: ``run`` is a `March`.
+        """Advance by some steps; ``run`` is a `March`.
 
-        A parallel loop can use a tuple only if it is an argument, not part of another: so tuples are put together here.
+        Each step: fly, let water evaporate and condense, sort the molecules into cells, collide. (Parallel loops of
+        numba take only tuples that are arguments, so the others are made here.)
         """
         tallies, water, dt, ceilings = run.tallies, run.water, run.length, run.ceilings
         threads = grid.place.shape[0] if parallel else 1
@@ -230,6 +233,7 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 number = number_present(columns, water)
                 workspace.counters[(number + BLOCK - 1) // BLOCK :] = 0.0
             step = Step(start, dt, ceilings[k], top, wall_key)
+            # free flight, with the walls
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
                 here = Air(columns, grid, gas, box, walls, workspace, tries, None)
@@ -245,12 +249,14 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 for t in prange(threads):
                     first, last = share_of(t, threads, number)
                     count_by_cell(columns.cell, grid.place[t], first, last)
+            # sort: each cell gets a list of its molecules
             reserve_places(grid, cells)
             if parallel and k % _SHARED == 0:
                 share_cells(grid.first, cells, workspace.cut)
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
                 index_by_cell(columns.cell, columns.order, grid.place[t], first, last)
+            # collide: the volume of a cell is the part that centres can reach
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
             sweep = 0.5 * run.cross_section * dt / volume
             for t in prange(threads):

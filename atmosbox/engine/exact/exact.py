@@ -1,12 +1,13 @@
 """The exact engine: time jumps from one event to the next, and nothing is approximated in between.
 
-Every molecule has one event: its next contact, its next crossing of a cell boundary, or its next wall,
-whichever comes first. The calendar tells which of all is next; that event is resolved, and the events of the molecules
-that it changed are predicted anew. A contact whose partner has meanwhile had another encounter is stale: when it comes
-due, the events of its molecule are predicted anew. The order of events is exact to rounding.
+Every molecule has one event, the first of three: its next contact, the next boundary of a cell that it reaches, its
+next hit on a wall. The calendar tells which event of all molecules is the next. It is resolved, and the events of the
+molecules whose velocity it changed are predicted again. If the partner of a contact has had another encounter since the
+contact was predicted, the prediction is stale: nothing happens, and the events of the molecule are predicted again. The
+order of events is exact to rounding.
 
-A scene pays only for what it requires: `specialise` makes the kernels for one set of `Modes`, and
-the code of all other features is left out of them.
+The loop over events is `proceed`: read it first. `specialise` makes the kernels for one set of `Modes`, the features
+that a scene needs; the code of all other features is not compiled.
 """
 
 import functools
@@ -36,12 +37,12 @@ __all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
 class Status(IntEnum):
     """Why the loop over events has stopped.
 
-    ``DONE``: the time asked for is reached; ``BUSY``: as many events are resolved as were asked for; ``ROW_FULL``: the
-    row of a cell must grow; ``STALLED``: very many events in a vanishing time; ``MEETS_LIQUID``: the next event is a
-    molecule that meets a pool or a drop, which the caller resolves; ``CROWDED``: there is no free place for a molecule
-    that evaporates; ``EPOCH_OVER``: the copies in the rows must be written anew before the next event; ``OUTGROWN``: a
-    molecule has risen above the cells, which must be laid out anew; ``CRUSHED``: the piston has come too low;
-    ``TURNED``: the piston has a new velocity, and the cells must be laid out anew because the height of the box has
+    ``DONE``: the requested time is reached; ``BUSY``: as many events are resolved as were requested; ``ROW_FULL``: the
+    row of a cell must become longer; ``STALLED``: very many events in a vanishing time; ``MEETS_LIQUID``: the next
+    event is a molecule that meets a pool or a drop, which the caller resolves; ``CROWDED``: there is no free place for
+    a molecule that evaporates; ``EPOCH_OVER``: the copies in the rows must be written again before the next event;
+    ``OUTGROWN``: a molecule has risen above the cells, which must be chosen again; ``CRUSHED``: the piston has come too
+    low; ``TURNED``: the piston has a new velocity, and the cells must be chosen again because the height of the box has
     changed too much.
     """
 
@@ -64,10 +65,9 @@ _FLOOR, _CEILING = 4, 5
 
 @kernel
 def _fetch_ahead(gas):
-    """Fetch into the cache the data of the molecules whose events may come next.
+    """Ask the processor for the data of the molecules whose events may come next, before they are needed.
 
-    The nodes 2 to 7 of the tournament hold the winners of the two levels below the root; one of them is most often
-    the next event but one.
+    These are the molecules in the nodes 2 to 7 of the calendar's tree, the two levels below its root.
     """
     calendar = gas.calendar
     for node in range(2, 8):
@@ -79,7 +79,7 @@ def _fetch_ahead(gas):
 
 @kernel
 def piled_up(t, events, gas):
-    """Count ``events`` more events up to time t; return whether there are too many of them in next to no time."""
+    """Count ``events`` more events up to time t; return whether there are too many of them in a vanishing time."""
     progress = gas.tallies.progress
     if t - progress[0] > gas.box.stall:
         progress[0] = t
@@ -97,7 +97,7 @@ def proceed(gas, until, most, modes):
     contacts = entered = left = stale = wall_hits = 0
     epoch_end = gas.cells.copies.epoch[STOP]
     while done < most:
-        # the next event, and its molecule
+        # the molecule of the next event, and its time; reasons to stop before it
         i, t = next_event(gas.calendar)
         if not t <= until:
             status = Status.DONE
@@ -111,6 +111,7 @@ def proceed(gas, until, most, modes):
         _fetch_ahead(gas)
         event = gas.events[i]
         what = np.int64(event.what)
+        # fly the molecule from its own clock to the event: nobody else moves
         at = motion_at(i, t, gas, modes)
         j = -1
         other = at
@@ -142,7 +143,7 @@ def proceed(gas, until, most, modes):
                 at, other = meet(i, j, t, at, gas, modes)
                 contacts += 1
             else:
-                # a contact with itself at the time of its clock means a new velocity: that is no stale prediction
+                # a contact with itself at the time of its clock is entered by `call`: that is no stale prediction
                 stale += 1 if j != i or gas.molecules[i].clock < t else 0
                 j = -1
         else:
@@ -155,7 +156,7 @@ def proceed(gas, until, most, modes):
             at = hit(i, _CEILING if what == CEILING else what, t, at, gas, modes)
             wall_hits += 1
         done += 1
-        # the events of both are predicted anew; in one loop, so that the search for contacts is compiled into it once
+        # predict the next events of i and, after a contact, of j: in one loop, so that `plan` is compiled only once
         full = False
         m = i
         while True:
@@ -199,7 +200,7 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def place(gas, now):
-        """Enter all molecules into their cells at time ``now`` and have their events predicted; stop at a full row."""
+        """Enter all molecules into their cells at time ``now``, and request predictions for all; stop at a full row."""
         gas = by_reference(gas)
         cells = gas.cells
         row = cells.row
@@ -226,7 +227,7 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def refill(gas, now):
-        """Write the copies in all rows anew at time ``now``; return whether a row is too short."""
+        """Write the copies in all rows again at time ``now``; return whether a row is too short."""
         gas = by_reference(gas)
         return fill(now, gas, modes)
 
@@ -272,8 +273,8 @@ def _checking(modes: Modes) -> Any:
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
 
-    They are closures over plain flags, compiled once per set and kept on disk. Kernels that read few of the flags are
-    shared by all sets that differ in the others.
+    The flags are constants in them, so that numba leaves out what is switched off. They are compiled once for each set,
+    and kept on disk. Kernels that read few of the flags are shared by all sets that differ in the others.
     """
     of_events = ("rotation", "pool", "drops", "images", "ascends")
     place, refill = _laying_out(modes.without("piston", *of_events))
@@ -281,7 +282,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
-        """Predict anew, at ``now``, the moves of all molecules that may meet a ceiling coming down to ``lowest``."""
+        """Predict again, at ``now``, the moves of all molecules that may meet a ceiling coming down to ``lowest``."""
         gas = by_reference(gas)
         replan_under(lowest, now, gas, modes)
 
@@ -289,8 +290,8 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     def advance(gas, until, most):
         """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` as a number and how many.
 
-        Compiled code returns the status as a plain number, because numba would make an enum by calling Python: a
-        signal that has arrived meanwhile would then raise its exception where none can be handled.
+        The status is a plain number: to make an enum, numba would call Python, where a signal such as Ctrl-C could
+        raise an exception that compiled code cannot handle.
         """
         gas = by_reference(gas)
         status, done = proceed(gas, until, most, modes)

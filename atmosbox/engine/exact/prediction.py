@@ -1,7 +1,8 @@
 """The next events of a molecule: its next contact, its next cell boundary, its next wall.
 
-All three are predicted when the molecule has had an encounter, and only its own cells are searched. The soonest becomes
-its event in the calendar.
+All three are predicted when the molecule has had an encounter, and the soonest becomes its event in the calendar
+(`plan`). Only the members of its own cells are searched for a contact: by `search` where rows hold copies of
+trajectories, by `soonest_in_cell` where they are lists of molecules.
 """
 
 import math
@@ -20,7 +21,7 @@ from atmosbox.engine.exact.search import CONTACT, search
 __all__ = ["CEILING", "CONTACT", "Meeting", "call", "limits", "next_move", "plan", "side", "soonest_in_cell"]
 
 CEILING = 7
-"""Which event comes first: 0 to 5 a boundary or wall (2 * axis, plus 1 for the upper side), 6 a contact, 7 this."""
+"""An event with a moving ceiling. 0 to 5 is a boundary or a wall (2 * axis, plus 1 for the upper side), 6 a contact."""
 
 
 class Meeting(NamedTuple):
@@ -52,6 +53,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
     partner = known.partner
     for q in range(np.int64(row[start])):
         j = np.int64(row[start + 1 + q])
+        # where the other one is at time t, from its own clock on
         other = gas.molecules[j]
         dt = t - other.clock
         wx = other.vx
@@ -76,7 +78,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
                 partner = j
             continue
         discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
-        # most pairs miss: all else is inside this one branch; a pair that overlaps by rounding and parts has b >= 0
+        # most pairs miss and end here; a pair that overlaps by rounding and moves apart has b >= 0
         if discriminant > 0.0:
             after = predict(discriminant, b, c)
             if after < soonest and b < 0.0 and i != j:
@@ -110,6 +112,7 @@ def next_move(slots, t, at, size, radius, gas, modes):
 
     ``slots`` are its slots along x, y and z, ``size`` its size class.
     """
+    # the soonest of three axes: a boundary of a cell, or a wall
     low, high = limits(slots[0], 0, size, radius, gas, modes)
     time, up = time_to_leave(at.x, at.vx, low, high)
     what = up
@@ -127,6 +130,7 @@ def next_move(slots, t, at, size, radius, gas, modes):
         what = 4 + up
     time = min(time, time_z)
     if modes.piston:
+        # the ceiling moves: it has its own position and time
         piston = gas.walls.piston
         speed = piston[1]
         ceiling = piston[0] + speed * (t - piston[2])
@@ -141,7 +145,8 @@ def next_move(slots, t, at, size, radius, gas, modes):
 def plan(i, t, at, boundary, gas, modes):
     """Predict the next events of molecule i, whose `Motion` at time t is ``at``, and enter the first in the calendar.
 
-    With rows, the molecule may just have reached ``boundary``: see `search`. Returns whether the row of a cell is full.
+    Where rows hold copies, the molecule may be at the ``boundary`` of a cell: see `search`. Returns whether a row is
+    full.
     """
     event = gas.events[i]
     size, radius = size_and_radius(i, gas, modes)
@@ -151,7 +156,7 @@ def plan(i, t, at, boundary, gas, modes):
         at, slots, full = found.at, found.slots, found.full
         after, partner = found.after, found.partner
         if partner < 0 and boundary >= CONTACT:
-            partner = i  # no contact within the horizon: when that is reached, its events are predicted anew
+            partner = i  # no contact within the horizon: when that time comes, its events are predicted again
     else:
         slots = slots_of(i, gas)
         after, partner = _soonest_in_lists(i, t, at, slots, gas, modes)
@@ -159,7 +164,7 @@ def plan(i, t, at, boundary, gas, modes):
     event.contact_time = t + after
     if partner >= 0:
         event.partner = partner
-        # a prediction is stale as soon as its partner has another encounter: then the partner's count differs
+        # if the partner has another encounter before, its count differs, and the prediction is stale
         event.partner_count = gas.molecules[partner].count
     if after < time:
         what = CONTACT
@@ -170,10 +175,10 @@ def plan(i, t, at, boundary, gas, modes):
 
 @kernel
 def call(i, t, gas):
-    """Have the events of molecule i predicted anew at time t, before anything else happens: its velocity is new.
+    """Request that the events of molecule i are predicted at time t, before anything else happens.
 
-    This is entered as a contact of the molecule with itself, so that the loop over events, which does the prediction,
-    is the only place into which the search for contacts is compiled.
+    The request is a contact of the molecule with itself. So only the loop over events contains the search for contacts,
+    which takes long to compile.
     """
     event = gas.events[i]
     event.contact_time = t

@@ -1,8 +1,8 @@
 """The search for a molecule's next contact, where the rows of cells hold copies of trajectories.
 
-A molecule searches the rows of all its cells when its velocity is new, and the rows of new cells alone when it reaches
-their boundary. Both are done here, so that the search is compiled once. In the same step it leaves the cells that it no
-longer overlaps: leaving a cell has no event of its own.
+When its velocity is new, a molecule searches the rows of all its cells. When it reaches the boundary of new cells, it
+searches the rows of these alone. Both are done by one function, so that the search is compiled once. It also takes the
+molecule out of the cells that it no longer overlaps, because leaving a cell is not an event.
 """
 
 from typing import Any, NamedTuple
@@ -40,19 +40,21 @@ _OTHERS = (1 << 64 - BATCH) - 1
 
 
 class Seeker(NamedTuple):
-    """A molecule that searches for partners.
-
-    The time, its `Motion` then and its radius; for `screen`, how much higher it is in the falling frame [length],
-    and, in single precision, its velocity in that frame, the time since the start of the epoch, and the slack.
-    """
+    """A molecule that searches for partners, and what the quick test of `screen` needs of it."""
 
     t: float
+    """The time."""
     at: Motion
+    """Its position and velocity at this time."""
     radius: float
     fall: float
+    """How much higher it is in the frame that falls with gravity from the start of the epoch [length]."""
     velocity: Any
+    """Its velocity in that frame, in single precision."""
     since: Any
+    """The time since the start of the epoch, in single precision."""
     slack: Any
+    """By how much the quick test may be wrong, so that no contact is missed."""
 
 
 class Found(NamedTuple):
@@ -145,7 +147,7 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
     t, at, radius = seeker.t, seeker.at, seeker.radius
     x, y, z = at.x - centre[0], at.y - centre[1], at.z - centre[2]
     place = np.float32(x), np.float32(y), np.float32(z + seeker.fall)
-    # which members may be met? All blocks are tested first: the processor then mispredicts fewer branches
+    # first the quick test of all blocks, eight members at once (separate from the exact test, this is faster)
     occupied = copies.occupied[start >> 1] & ~own
     within = np.float32(after)
     named = np.int64(0)
@@ -158,7 +160,7 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
         left = (left >> BATCH) & _OTHERS
         block += 1
     named &= occupied
-    # these are tested in double precision; the image of a member is the one nearest to the centre of the cell
+    # then the exact test of those that it names; the image of a member is the one nearest to the centre of the cell
     while named != 0:
         j = name_at(start, lowest_bit(named), cells, modes)
         named &= named - 1
@@ -209,7 +211,8 @@ def search(i, t, at, boundary, gas, modes):
     sx = _narrowed(at.x, before[0], size, 0, cells)
     sy = _narrowed(at.y, before[1], size, 1, cells)
     sz = _narrowed(at.z, before[2], size, 2, cells)
-    # the cells that it enters: its cells in one layer across the axis; all have the same parity of that number
+    # at a boundary it enters cells in one layer: their number along that axis is all even or all odd, so a fixed set
+    # of bits names them (`rows` tells which bit is which cell)
     crossing = boundary < CONTACT
     entered = 0xFF
     if crossing:
@@ -234,7 +237,7 @@ def search(i, t, at, boundary, gas, modes):
         bit = lowest_bit(gone)
         gone &= gone - 1
         leave(i, bit, start_of(bit, before, cells, modes), cells)
-    # search the others. On entering, only the new cells are searched, and only for contacts before the known one
+    # search: at a boundary only the new cells, and only for contacts before the known one
     after = event.contact_time - t if crossing else copies.horizon[slots[2] >> 1]
     partner = -1
     full = False
