@@ -22,10 +22,10 @@ from atmosbox.lab.kernels.flowing import can_flow
 from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.laying_out import Column, Layout
 from atmosbox.lab.kernels.passing import Book
-from atmosbox.lab.kernels.sight import Sight
+from atmosbox.lab.kernels.picture import Picture
 from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
-from atmosbox.lab.moist_lab_box import hygrometer, liquid_sight, moisture
+from atmosbox.lab.moist_lab_box import hygrometer, liquid_picture, moisture
 from atmosbox.lab.start_plan import first_baths, is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_lab_box import crowd, lists, well_gas
@@ -89,7 +89,7 @@ class LabBox(NamedTuple):
     gauges: Gauges
     speeds: Average
     layers: Average
-    sight: Sight
+    picture: Picture
     crowd: Any
     start: Start | None
     seeded: bool
@@ -192,7 +192,7 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
         layout,
         _gauges(prepared, setup),
         *_averages(setup),
-        _sight(parcel, setup.scale, stage),
+        _picture(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
         start_of(parcel, layout),
         is_drawn(parcel),
@@ -394,17 +394,17 @@ def _average(number: int, frames: int) -> Average:
     )
 
 
-def _sight(parcel: Any, scale: Scale, stage: Stage | None) -> Sight:
+def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:
     shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
     highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
     if isinstance(parcel, AttractingParcelSet):
         highest = NEIGHBOURS
-    return Sight(
+    return Picture(
         shown,
         np.zeros(3),
         np.zeros((shown.size, 3), np.uint16),
         np.zeros(shown.size, np.uint8),
         highest,
         np.zeros(shown.size, np.uint8),
-        *liquid_sight(parcel, scale, stage),
+        *liquid_picture(parcel, scale, stage),
     )

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.units import Scale
     from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_sight", "moisture", "theory_at"]
+__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_picture", "moisture", "theory_at"]
 
 _WAY = 801
 """Number of values in the table of the adiabat of a parcel."""
@@ -195,8 +195,8 @@ def bins_of(setup: Setup, leaving: Leaving) -> Any:
     return fresh.readings(setup.scale, 0)["energy_bnds"]
 
 
-def liquid_sight(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, ...]:
-    """Return the data for the picture of the liquid: the last fields of `Sight`."""
+def liquid_picture(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, ...]:
+    """Return the data for the picture of the liquid: the last fields of `Picture`."""
     record = None if stage is None else stage.record
     water = 0 if record is None else int(record["water"])
     spread = places(water)
