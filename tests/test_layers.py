@@ -244,3 +244,29 @@ def test_rooms_stand_on_floors():
         assert ground, f"these rooms import each other in a circle: {sorted(standing)}"
         for name in ground:
             del standing[name]
+
+
+PUBLIC = {"_replace", "_asdict", "_fields", "_make", "_exit", "_get_tick", "_repr_png_"}
+"""Of named tuples, of Python, of matplotlib and of IPython."""
+
+
+def trespasses(root):
+    """Return one line for every private attribute that is used outside its class and its file."""
+    lines = []
+    for path in sorted([*root.glob("atmosbox/**/*.py"), *root.glob("scenarios/**/*.py")]):
+        place, tree = path.relative_to(root), ast.parse(path.read_text(encoding="utf-8"))
+        if place.parts[:2] == ("atmosbox", "engine"):
+            continue
+        used = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and node.attr.startswith("_")]
+        own = {node.attr for node in used if getattr(node.value, "id", "") in ("self", "cls")}
+        own |= {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+        lines += [
+            f"{place.as_posix()}:{node.lineno}: {ast.unparse(node)}"
+            for node in used
+            if node.attr not in PUBLIC | own and not node.attr.endswith("__")
+        ]
+    return lines
+
+
+def test_outside_the_engine_no_private_attribute_of_another_file_is_used():
+    assert trespasses(ROOT) == []

@@ -22,10 +22,10 @@ from atmosbox.lab.kernels.flowing import can_flow
 from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.laying_out import Column, Layout
 from atmosbox.lab.kernels.passing import Book
-from atmosbox.lab.kernels.sight import Sight
+from atmosbox.lab.kernels.picture import Picture
 from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
-from atmosbox.lab.moist_lab_box import hygrometer, liquid_sight, moisture
+from atmosbox.lab.moist_lab_box import hygrometer, liquid_picture, moisture
 from atmosbox.lab.start_plan import first_baths, is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_lab_box import crowd, lists, well_gas
@@ -45,7 +45,7 @@ from atmosbox.scene.instruments import (
     Speeds,
     Water,
 )
-from atmosbox.scene.instruments.flow import LOW
+from atmosbox.scene.instruments.flow import LOW, modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
 
@@ -89,7 +89,7 @@ class LabBox(NamedTuple):
     gauges: Gauges
     speeds: Average
     layers: Average
-    sight: Sight
+    picture: Picture
     crowd: Any
     start: Start | None
     seeded: bool
@@ -145,8 +145,8 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
     """Return whether there is no wind, or a wind that kernels can measure in the parts of the layers."""
     if flow is None:
         return True
-    parts = None if layers is None else (layers._number, layers._columns)
-    return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow._shape == parts
+    parts = None if layers is None else (layers.number, layers.columns)
+    return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow.shape == parts
 
 
 def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> LabBox:
@@ -192,7 +192,7 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
         layout,
         _gauges(prepared, setup),
         *_averages(setup),
-        _sight(parcel, setup.scale, stage),
+        _picture(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
         start_of(parcel, layout),
         is_drawn(parcel),
@@ -292,8 +292,8 @@ def _of(setup: Setup, kind: type) -> Any:
 def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
     """Return the data of the instruments at their start, with memory for further readings."""
     air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
-    edges = np.zeros(1) if speeds is None else speeds._edges
-    number = 0 if layers is None else layers._number
+    edges = np.zeros(1) if speeds is None else speeds.edges
+    number = 0 if layers is None else layers.number
     half = np.zeros(0, np.int64)
     if discs is not None:
         mass = setup.parcel.mass
@@ -303,13 +303,13 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
         reading=np.zeros(_READINGS),
         warmth=np.zeros(2),
         before=np.zeros(8),
-        barometer=0 if air is None or air._barometer == slice(None) else 4,
+        barometer=0 if air is None or air.barometer == "all" else 4,
         edges=edges,
         counts=np.zeros(edges.size - 1),
         speeds=np.zeros(edges.size - 1),
         sums=np.zeros((4, number)),
         layers=np.zeros(5 * number),
-        scratch=np.zeros((6, number if layers is None else number * layers._columns)),
+        scratch=np.zeros((6, number if layers is None else number * layers.columns)),
         half=half,
         running=np.zeros(8),
         mixture=_mixture(setup),
@@ -323,13 +323,11 @@ def _wind(setup: Setup) -> Any:
     flow, parcel = _of(setup, Flow), setup.parcel
     if not can_flow(parcel.arrays().modes):  # type: ignore[attr-defined]
         return 0
-    rows, columns = (0, 0) if flow is None else flow._shape
+    rows, columns = (0, 0) if flow is None else flow.shape
     high, phases, lapse, dense = np.zeros(0), np.zeros((0, 0)), np.zeros(2), 1.0
     if flow is not None:
-        flow._turn = bool(parcel.periodic[0])
-        wave = flow._waves()[:, None] * (math.pi * (np.arange(columns) + 0.5) / columns)
-        phases = np.concatenate([np.cos(wave), np.sin(wave)] if flow._turn else [np.cos(wave)])
-        high = np.sin(math.pi * (np.arange(rows) + 0.5) / rows)
+        high, across = modes_of_flow(rows, columns, periodic=parcel.periodic[0])
+        phases = np.concatenate(across)
         gas = law.Gas(2 if parcel.planar else 3, float(parcel.diameter[0]))
         dense = law.FREEZING_PACKING_FRACTION_DISCS / float(law.packing_fraction_discs(1.0, gas.diameter))
         lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), parcel.gravity))
@@ -341,9 +339,9 @@ def _wind(setup: Setup) -> Any:
         wave=phases,
         column=np.zeros((2, columns)),
         tagged=np.zeros(0 if flow is None else parcel.number, np.int64),
-        release=0 if flow is None else flow._release,
+        release=0 if flow is None else flow.release,
         low=LOW * float(parcel.length[2]),
-        near=LOW if flow is not None and flow._chimney else 1.0,
+        near=LOW if flow is not None and flow.chimney else 1.0,
         wind=np.zeros((2, rows * columns)),
         fresh=_FRESH,
         lapse=lapse,
@@ -355,12 +353,12 @@ def _wind(setup: Setup) -> Any:
 def _mixture(setup: Setup) -> Mixture:
     """Return the data of two gases that mix; empty arrays in a scene without them."""
     instrument, parcel = _of(setup, Mixing), setup.parcel
-    moments = [] if instrument is None else list(instrument._moments.values())
-    bins = 0 if instrument is None else instrument._bins
-    known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument._moments]
+    moments = [] if instrument is None else list(instrument.moments.values())
+    bins = 0 if instrument is None else instrument.bins
+    known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument.moments]
     radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
     return Mixture(
-        right=np.zeros(0, np.int64) if instrument is None else instrument._right.astype(np.int64),
+        right=np.zeros(0, np.int64) if instrument is None else instrument.right.astype(np.int64),
         low=radius,
         width=float(parcel.length[0]) - 2.0 * radius,
         moments=np.array(moments, float),
@@ -381,9 +379,9 @@ def _averages(setup: Setup) -> tuple[Average, Average]:
     independent.
     """
     speeds, layers = _of(setup, Speeds), _of(setup, Layers)
-    shares = 0 if speeds is None else speeds._edges.size - 1
-    profiles = 0 if layers is None else 5 * layers._number
-    memory = 0.0 if layers is None else layers._memory
+    shares = 0 if speeds is None else speeds.edges.size - 1
+    profiles = 0 if layers is None else 5 * layers.number
+    memory = 0.0 if layers is None else layers.memory
     return _average(shares, 1), _average(profiles, max(1, math.ceil(2.0 * memory / setup.frame)))
 
 
@@ -396,17 +394,17 @@ def _average(number: int, frames: int) -> Average:
     )
 
 
-def _sight(parcel: Any, scale: Scale, stage: Stage | None) -> Sight:
+def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:
     shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
     highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
     if isinstance(parcel, AttractingParcelSet):
         highest = NEIGHBOURS
-    return Sight(
+    return Picture(
         shown,
         np.zeros(3),
         np.zeros((shown.size, 3), np.uint16),
         np.zeros(shown.size, np.uint8),
         highest,
         np.zeros(shown.size, np.uint8),
-        *liquid_sight(parcel, scale, stage),
+        *liquid_picture(parcel, scale, stage),
     )

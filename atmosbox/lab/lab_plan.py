@@ -87,13 +87,13 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
 
     box = lab_box(prepared, look)
     setup, (stage, fast) = box.setup, seen[0]
-    named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
+    named = {"gas": box.gas, "gauges": box.gauges, "picture": box.picture, "speeds": box.speeds, "layers": box.layers}
     named["book"] = box.book
     memory = image(arguments(box), named)
     state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
     wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
-    wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
-    wanted |= {"sight.state", "sight.drops", "sight.many"}
+    wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "picture.place", "picture.colour", "picture.length"}
+    wanted |= {"picture.state", "picture.drops", "picture.many"}
     wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _has_wind(box) else set()
     wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)

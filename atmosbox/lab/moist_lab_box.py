@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.units import Scale
     from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_sight", "moisture", "theory_at"]
+__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_picture", "moisture", "theory_at"]
 
 _WAY = 801
 """Number of values in the table of the adiabat of a parcel."""
@@ -119,8 +119,8 @@ def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
 def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
     """Return the adiabat of a parcel that keeps its water, as a function of pressure alone: see `Hygrometer`."""
     levels = _levels(setup, lift)
-    levels = finer_at_kinks(levels, lift._curve(np.exp(levels)))
-    kelvin = lift._curve(np.exp(levels))
+    levels = finer_at_kinks(levels, lift.curve(np.exp(levels)))
+    kelvin = lift.curve(np.exp(levels))
     unit = np.array([math.log(setup.scale.pressure)])
     return np.zeros(1), unit * 0.0, levels[::-1] - unit, kelvin[None, ::-1] / setup.scale.temperature
 
@@ -137,7 +137,7 @@ def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tup
     around = np.array([lift.environment.pressure(t) for t in (shares * setup.duration * setup.scale.time).tolist()])
     # theory gives the remaining water in the middle of each frame
     middle = slice(setup.samples // 2 - 1, None, setup.samples)
-    kelvin, pressure = lift._curve(around)[middle], around[middle]
+    kelvin, pressure = lift.curve(around)[middle], around[middle]
     told = theory_at(prepared, pressure, rains=True)
     water = told["humidity_mixing_ratio_theory"] + told["cloud_liquid_water_mixing_ratio_theory"]
     heat = float(parcel.arrays().reservoir.nuclei) / (parcel.number - parcel.vapour)
@@ -182,7 +182,7 @@ def _leaving(setup: Setup) -> tuple[Any, int, int]:
     if leaving is None:
         return np.zeros(0), 0, 1
     bounds = bins_of(setup, leaving)
-    merged = leaving._merged
+    merged = leaving.merged
     parcel: Any = setup.parcel
     edges, _ = parcel.emitted_energy
     return np.diff(bounds)[:, 0] / setup.scale.energy, len(bounds) - (edges.size - 1) // merged, merged
@@ -190,13 +190,13 @@ def _leaving(setup: Setup) -> tuple[Any, int, int]:
 
 def bins_of(setup: Setup, leaving: Leaving) -> Any:
     """Return the bounds of the bins of energy : (bin, 2) [J]."""
-    fresh = Leaving(leaving._binding, leaving._merged)
+    fresh = Leaving(leaving.binding, leaving.merged)
     fresh.end_frame(setup.parcel, setup.parcel.snapshot())
     return fresh.readings(setup.scale, 0)["energy_bnds"]
 
 
-def liquid_sight(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, ...]:
-    """Return the data for the picture of the liquid: the last fields of `Sight`."""
+def liquid_picture(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, ...]:
+    """Return the data for the picture of the liquid: the last fields of `Picture`."""
     record = None if stage is None else stage.record
     water = 0 if record is None else int(record["water"])
     spread = places(water)

@@ -88,7 +88,7 @@ def water_readings(box: LabBox) -> list[tuple[str, int, float]]:
     nuclei = _instrument(box.setup, Nuclei)
     if nuclei is not None:
         solute = box.book.moisture.drops.solute
-        real = scale.length / nuclei._width
+        real = scale.length / nuclei.width
         found.append(("saturation_ratio", WaterReading.SATURATION_RATIO, 1.0))
         found += [("salted_drop_radius", WaterReading.SALTED_RADIUS, real)] if (solute > 0.0).any() else []
         found += [("pure_drop_radius", WaterReading.PURE_RADIUS, real)] if (solute == 0.0).any() else []
@@ -107,7 +107,7 @@ def fixed_axes(box: LabBox) -> dict[str, Any]:
     """Return the middles of the bins of that histogram [J], and the radii of drops at which theory is drawn [m]."""
     leaving, nuclei = _instrument(box.setup, Leaving), _instrument(box.setup, Nuclei)
     found = {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
-    return found if nuclei is None else found | {"radius": plain(nuclei._radius)}
+    return found if nuclei is None else found | {"radius": plain(nuclei.radius)}
 
 
 def planned_alone(box: LabBox) -> list[str]:
@@ -179,7 +179,7 @@ def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -
     spread = {
         "along": "moment",
         "grid": plain(frames),
-        "curves": {"parcel_temperature_se": plain(lift._scatter(middle))},
+        "curves": {"parcel_temperature_se": plain(lift.scatter(middle))},
         "times": {"parcel_temperature_se": "parcel_temperature"},
     }
     rains = "rain_mixing_ratio" in found

@@ -52,7 +52,7 @@ def crowd(setup: Setup) -> Crowd:
     number = setup.parcel.number
     clusters = next((each for each in setup.instruments if type(each) is Clusters), Clusters(0))
     return Crowd(
-        members=clusters._molecules,
+        members=clusters.molecules,
         crowded=CROWDED,
         wells=np.zeros(number, np.int64),
         drop=np.zeros(number, np.int64),

@@ -37,13 +37,13 @@ def arguments(box: LabBox) -> dict[str, tuple[Any, ...]]:
         "end_frame": (gas, ascent, book, gauges),
         "note_frame": (gas, gauges, box.speeds, box.layers),
         "begin_averages_anew": (box.speeds, box.layers),
-        "look": (gas, book, box.sight),
+        "look": (gas, book, box.picture),
     } | (_knobs(box) if box.modes.phases else {"warm_walls": (gas.walls, 0, 6, 1.0)})
     if box.attracts:
         found |= {
             "begin": (gas, ascent, book, gauges, box.crowd),
             "end_frame": (gas, ascent, book, gauges, layout, box.crowd),
-            "look": (gas, book, layout, box.crowd, box.sight),
+            "look": (gas, book, layout, box.crowd, box.picture),
             "attract": (gas, book, layout, 1.0),
             "warm_bath": (gas.bath, 1.0),
         }

@@ -8,7 +8,9 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
-from atmosbox.lab.lab_start import served_start
+from atmosbox.lab.lab_start import lab_starts, served_start
+from atmosbox.lab.memory_image import parts
+from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.instruments import MOMENTS
@@ -44,6 +46,22 @@ def test_the_same_scene_gives_the_same_memory_wherever_python_keeps_its_arrays()
         images.append(lab_plan(prepared)[1])
         kept.append(np.zeros(37 + 101 * number))  # so that the next arrays lie elsewhere
     assert all(image == images[0] for image in images)
+
+
+def told_without_molecules(setup):
+    """Return what the page is told of a box besides its molecules."""
+    gas = setup.parcel.arrays().gas
+    box = gas.kinds.table, gas.box._replace(stall=0.0), gas.walls._replace(piston=0)
+    told = parts((*box, start_of(setup.parcel, 0), setup.duration), "")
+    return [value.tobytes() if isinstance(value, np.ndarray) else value for _, value, _ in told]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_seed_of_a_declared_start_decides_nothing_but_the_molecules(scene):
+    first, second = (build(prepare(scene, SCENES[scene] | {"seed": seed}, engine="exact")) for seed in (1, 2))
+    assert is_drawn(first.parcel) == (scene not in ("elastic-collisions", "convection"))
+    if is_drawn(first.parcel):
+        assert told_without_molecules(first) == told_without_molecules(second)
 
 
 @pytest.mark.nightly

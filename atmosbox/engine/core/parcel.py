@@ -331,6 +331,11 @@ class Parcel(Adjustable):
         return self._periodic
 
     @property
+    def laws(self) -> NDArray[np.int64]:
+        """Law of each of the six walls, (wall,), as in `atmosbox.engine.core.walls`."""
+        return np.array(self._walls.law)
+
+    @property
     def gravity(self) -> float:
         """Downward acceleration [length/time^2]."""
         return self._gravity

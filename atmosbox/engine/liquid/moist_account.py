@@ -15,6 +15,7 @@ from atmosbox.engine.liquid.reservoir import (
     LIQUID,
     RAINED,
     RAINED_ENERGY,
+    STICKING,
     THERMAL,
     Reservoir,
     cover,
@@ -122,6 +123,11 @@ class MoistAccount(Parcel):
     def number(self) -> int:
         """Number of molecules of the gas."""
         return len(self._mass) - int(self._reservoir.top[0])
+
+    @property
+    def sticking(self) -> float:
+        """Fraction of the vapour molecules that hit the liquid now and stay; less if a part of a pool is covered."""
+        return float(self._reservoir.rates[STICKING])
 
     @property
     def liquid(self) -> int:

@@ -1,6 +1,6 @@
 """The kernels that a page calls: the engine, and what Python does between two calls of the engine.
 
 Nothing here is called from Python; ``tools/wasm.py`` compiles it to WebAssembly. Read `passing` first, then `gauging`,
-`averaging`, `height_profile` and `sight`; `attracting` and `clustering` replace some of them for molecules that attract
-each other; `kernel_table` lists the kernels that a page calls.
+`averaging`, `height_profile` and `picture`; `attracting` and `clustering` replace some of them for molecules that
+attract each other; `kernel_table` lists the kernels that a page calls.
 """

@@ -18,7 +18,7 @@ from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.wells.vicinity import is_inside
 from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.gauging import Reading, gauging
-from atmosbox.lab.kernels.sight import sight
+from atmosbox.lab.kernels.picture import picture
 
 __all__ = ["FIRST", "Crowd", "DropReading", "clustering"]
 
@@ -111,7 +111,7 @@ def _find_drops(vicinity, stride, crowd):
 def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``begin``, ``sample``, ``end_frame`` and ``look`` of one set of modes."""
     begin_air, sample, end_air = gauging(modes)
-    look_at_speeds = sight(modes)
+    look_at_speeds = picture(modes)
 
     @kernel
     def begin(gas, ascent, book, gauges, crowd):
@@ -199,13 +199,13 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return 0
 
     @kernel
-    def look(gas, book, lists, crowd, sight):
+    def look(gas, book, lists, crowd, picture):
         """Write the positions of all molecules that are shown, and as colour the number of wells each is in."""
-        look_at_speeds(gas, book, sight)
+        look_at_speeds(gas, book, picture)
         _count_wells(gas.vicinity, lists.stride[0], crowd.wells)
-        for k in range(sight.shown.size):
-            share = crowd.wells[sight.shown[k]] / sight.highest
-            sight.colour[k] = math.floor(min(share, 1.0) * 255 + 0.5)
+        for k in range(picture.shown.size):
+            share = crowd.wells[picture.shown[k]] / picture.highest
+            picture.colour[k] = math.floor(min(share, 1.0) * 255 + 0.5)
         return 0
 
     return begin, sample, end_frame, look

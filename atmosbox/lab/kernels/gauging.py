@@ -17,8 +17,8 @@ from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
 from atmosbox.lab.kernels.flowing import ALOFT, ROLLS, WIND, Flow, across, flowing
 from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
+from atmosbox.lab.kernels.in_gas import is_away, number_in_gas
 from atmosbox.lab.kernels.passing import ascent_of
-from atmosbox.lab.kernels.presence import is_away, number_in_gas
 from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
 __all__ = ["Gauges", "Reading", "gauging"]

@@ -21,7 +21,7 @@ from atmosbox.engine.liquid.reservoir import (
     THERMAL,
     heat_capacity,
 )
-from atmosbox.lab.kernels.presence import number_in_gas
+from atmosbox.lab.kernels.in_gas import number_in_gas
 
 __all__ = ["Hygrometer", "WaterReading", "hygrometry"]
 

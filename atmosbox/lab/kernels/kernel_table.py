@@ -18,7 +18,7 @@ from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.height_profile import end_profile
 from atmosbox.lab.kernels.moist_passing import moist_knobs
 from atmosbox.lab.kernels.passing import passing
-from atmosbox.lab.kernels.sight import sight
+from atmosbox.lab.kernels.picture import picture
 from atmosbox.lab.kernels.starting import can_start, starting
 
 __all__ = ["kernels"]
@@ -83,7 +83,7 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
     else:
         pass_time, place = passing(modes)
         begin, sample, end_frame = gauging(modes)
-        look = sight(modes)
+        look = picture(modes)
     return (
         found
         | {

@@ -53,7 +53,7 @@ class Air:
     """
 
     def __init__(self, barometer: str = "all") -> None:
-        self._barometer = slice(None) if barometer == "all" else slice(4, 5)
+        self.barometer = barometer
         self._kT: list[float] = []
         self._impulse = np.zeros(6)
         self._time = 0.0
@@ -70,7 +70,7 @@ class Air:
         impulse = parcel.wall_impulse - self._impulse
         with np.errstate(invalid="ignore", divide="ignore"):
             wall_pressure = np.where(area > 0.0, impulse / (area * lasted), np.nan)
-        chosen = self._barometer
+        chosen = slice(None) if self.barometer == "all" else slice(4, 5)
         row: dict[str, Any] = {
             "air_temperature": float(np.mean(self._kT)),
             "air_pressure": float(impulse[chosen].sum() / (area[chosen].sum() * lasted))

@@ -77,7 +77,7 @@ class Clusters:
     """
 
     def __init__(self, molecules: int, liquid: float = 1.0) -> None:
-        self._molecules = molecules
+        self.molecules = molecules
         self.liquid = liquid
         self._kT: list[float] = []
         self._rows: list[dict[str, float]] = []
@@ -90,7 +90,7 @@ class Clusters:
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Count the drops, and read the sums of the frame."""
-        n = self._molecules
+        n = self.molecules
         drop = drops_of(parcel.pairs(), parcel.number)[:n]
         lasted = parcel.time - self._time
         virial = float(parcel.virial.sum())

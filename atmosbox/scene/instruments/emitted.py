@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from atmosbox.engine import Snapshot
-from atmosbox.engine.liquid.reservoir import STICKING
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 
@@ -33,8 +32,8 @@ class Leaving:
     """
 
     def __init__(self, binding_energy: float, merged: int = 2) -> None:
-        self._binding = binding_energy
-        self._merged = merged
+        self.binding = binding_energy
+        self.merged = merged
         self._edges = np.array([0.0, 1.0])
         self._counts = np.zeros(1)
         self._open: list[float] = []
@@ -44,15 +43,15 @@ class Leaving:
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read the energies of the molecules that have left, and how much of the surface is open."""
-        self._open.append(float(parcel._reservoir.rates[STICKING]))
+        self._open.append(parcel.sticking)
         edges, counts = parcel.emitted_energy
-        self._edges, self._counts = edges[:: self._merged], counts.reshape(-1, self._merged).sum(axis=1)
+        self._edges, self._counts = edges[:: self.merged], counts.reshape(-1, self.merged).sum(axis=1)
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the histogram, which begins at zero energy; see `Instrument`."""
         width = float(self._edges[1])
-        below = np.linspace(0.0, self._binding, max(round(self._binding / width), 1), endpoint=False)
-        edges = np.concatenate([below, self._binding + self._edges]) * scale.energy
+        below = np.linspace(0.0, self.binding, max(round(self.binding / width), 1), endpoint=False)
+        edges = np.concatenate([below, self.binding + self._edges]) * scale.energy
         counts = np.concatenate([np.zeros(len(below)), self._counts])
         out = Readings(energy=0.5 * (edges[1:] + edges[:-1]), energy_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
         number = counts.sum()

@@ -51,9 +51,9 @@ class Flow:
     """
 
     def __init__(self, rows: int, columns: int, release: int, *, chimney: bool = False) -> None:
-        self._shape = rows, columns
-        self._release = release
-        self._chimney = chimney
+        self.shape = rows, columns
+        self.release = release
+        self.chimney = chimney
         self._tagged = np.zeros(0, np.bool_)
         self._sum = np.zeros((5, rows * columns))
         self._wind = 0.0
@@ -62,11 +62,11 @@ class Flow:
         self._fields: list[Array] = []
         self._rows: list[dict[str, Any]] = []
         self._sides = np.ones(3)
-        self._turn = False
+        self._periodic = False
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Sum momentum and energy of each cell, and the modes."""
-        rows, columns = self._shape
+        rows, columns = self.shape
         cells, length, mass = rows * columns, parcel.length, float(parcel.mass[0])
         x, z = snapshot.position[:, 0] / float(length[0]), snapshot.position[:, 2] / float(length[2])
         row = np.clip((z * rows).astype(np.int64), 0, rows - 1)
@@ -84,11 +84,8 @@ class Flow:
         self._sum += number, along, up, energy, freedom
         pairs = number > 1.0
         self._wind += float(np.sum((along**2 + up**2 - flat)[pairs] / (number[pairs] - 1.0))) / len(u)
-        self._sides, self._turn = np.array(length, np.float64), bool(parcel.periodic[0])
-        height, across = (np.arange(rows) + 0.5) / rows, (np.arange(columns) + 0.5) / columns
-        high = np.sin(math.pi * height)
-        wave = self._waves()[:, None] * (math.pi * across)
-        phases = (np.cos(wave), np.sin(wave)) if self._turn else (np.cos(wave),)
+        self._sides, self._periodic = np.array(length, np.float64), bool(parcel.periodic[0])
+        high, phases = modes_of_flow(rows, columns, periodic=self._periodic)
         part, alone = (
             high**power @ each.reshape(rows, columns) * (2.0 / len(u)) ** power
             for power, each in ((1, up), (2, upright))
@@ -97,15 +94,11 @@ class Flow:
         self._mode += amplitude[0], np.sum(amplitude**2, axis=0) - sum(phase**2 @ alone for phase in phases)
         self._looks += 1
 
-    def _waves(self) -> Array:
-        """Return the numbers of half waves across the box."""
-        return np.arange(1.0, MODES + 1.0) * (2.0 if self._turn else 1.0)
-
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the fields of a frame, and tag the molecules near the floor when it is time."""
         looks = max(self._looks, 1)
         number, along, up, energy, freedom = self._sum
-        rows, columns = self._shape
+        rows, columns = self.shape
         with np.errstate(invalid="ignore", divide="ignore"):
             density = number / looks / (parcel.volume / (rows * columns))
             kT = np.where(freedom > 0.0, 2.0 * energy / freedom, np.nan)
@@ -121,10 +114,10 @@ class Flow:
             profile = 2.0 * warmth / free_rows
             core = height[inside] - height[inside].mean()
             lapse = -float(core @ profile[inside]) / float(core @ core) / float(parcel.length[2])
-        if len(self._rows) == self._release:
+        if len(self._rows) == self.release:
             low = snapshot.position[:, 2] < LOW * float(parcel.length[2])
             middle = np.abs(snapshot.position[:, 0] / float(parcel.length[0]) - 0.5) < LOW
-            self._tagged = low & middle if self._chimney else low
+            self._tagged = low & middle if self.chimney else low
         aloft = snapshot.position[self._tagged, 2] > 0.5 * float(parcel.length[2]) if self._tagged.any() else []
         share = float(np.mean(aloft)) if len(aloft) else math.nan
         self._rows.append(
@@ -145,7 +138,7 @@ class Flow:
         """Return fields and series of all frames; see `Instrument`."""
         if not self._rows:
             return Readings()
-        rows, columns = self._shape
+        rows, columns = self.shape
         edges = np.linspace(0.0, float(self._sides[0]), columns + 1) * scale.length
         speed = scale.velocity
         units = {
@@ -156,7 +149,7 @@ class Flow:
         }
         found = Readings(
             {name: np.array([row[name] for row in self._rows]) * units.get(name, 1.0) for name in self._rows[0]},
-            mode=self._waves(),
+            mode=_half_waves(periodic=self._periodic),
             distance=0.5 * (edges[1:] + edges[:-1]),
             distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),
         )
@@ -179,6 +172,29 @@ class Flow:
             mean, error = overlapping_average(late, min(8, len(late) // 2))
             found |= {"layer_wind": mean, "layer_wind_se": error}
         return found
+
+
+def modes_of_flow(rows: int, columns: int, *, periodic: bool) -> tuple[Array, Array]:
+    """Return the modes of the upward wind, by height and across the box: cosines, and sines if it is periodic.
+
+    Returns
+    -------
+    (row,), (1 or 2, mode, column)
+
+    Examples
+    --------
+    >>> high, across = modes_of_flow(2, 4, periodic=True)
+    >>> high.round(3).tolist(), across.shape[0]
+    ([0.707, 0.707], 2)
+    """
+    wave = _half_waves(periodic=periodic)[:, None] * (math.pi * ((np.arange(columns) + 0.5) / columns))
+    across = [np.cos(wave), np.sin(wave)] if periodic else [np.cos(wave)]
+    return np.sin(math.pi * ((np.arange(rows) + 0.5) / rows)), np.stack(across)
+
+
+def _half_waves(*, periodic: bool) -> Array:
+    """Return the numbers of half waves across the box."""
+    return np.arange(1.0, MODES + 1.0) * (2.0 if periodic else 1.0)
 
 
 def _root(square: float) -> float:

@@ -49,11 +49,11 @@ class Layers:
         gas: str = "",
         which: NDArray[np.bool_] | None = None,
     ) -> None:
-        self._number = number
-        self._columns = columns
+        self.number = number
+        self.columns = columns
         self._gas = gas
         self._which = which
-        self._memory = memory
+        self.memory = memory
         self._energy: list[float] = []
         self._sum = np.zeros((3, number))
         self._looks = self._samples = 0
@@ -74,21 +74,21 @@ class Layers:
             snapshot = snapshot._replace(
                 position=snapshot.position[self._which], velocity=snapshot.velocity[self._which]
             )
-        if self._columns > 1:
+        if self.columns > 1:
             # each part of a layer is a layer of its own in a box as much higher
             high, wide = float(parcel.length[2]), float(parcel.length[0])
             x, z = snapshot.position[:, 0] / wide, snapshot.position[:, 2] / high
             row, column = (
                 np.clip((share * parts).astype(np.int64), 0, parts - 1)
-                for share, parts in ((z, self._number), (x, self._columns))
+                for share, parts in ((z, self.number), (x, self.columns))
             )
-            parts = self._number * self._columns
+            parts = self.number * self.columns
             measured = SimpleNamespace(length=(1.0, 1.0, parts), planar=parcel.planar, mass=parcel.mass)
-            place = np.stack([x, x, row * self._columns + column + 0.5], axis=1)
+            place = np.stack([x, x, row * self.columns + column + 0.5], axis=1)
             sums = np.stack(layer_sample(measured, snapshot._replace(position=place), parts))
-            self._sum += sums.reshape(3, self._number, self._columns).sum(axis=2)
+            self._sum += sums.reshape(3, self.number, self.columns).sum(axis=2)
         else:
-            self._sum += np.stack(layer_sample(measured, snapshot, self._number))
+            self._sum += np.stack(layer_sample(measured, snapshot, self.number))
         self._looks += 1
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
@@ -98,12 +98,12 @@ class Layers:
         rate = (parcel.virial - self._virial) / lasted
         self._energy.append(sum(parcel.energy()))
         self._frames.append(np.stack([*(self._sum / max(self._looks, 1)), rate]))
-        self._sum = np.zeros((3, self._number))
+        self._sum = np.zeros((3, self.number))
         self._looks, self._samples = 0, self._looks
         self._virial = parcel.virial
         self._time = parcel.time
         self._height = float(parcel.length[2])
-        self._volume = parcel.volume / self._number
+        self._volume = parcel.volume / self.number
         self._mass = float(parcel.mass.mean())
         self._dimensions = 2.0 if parcel.planar else 3.0
 
@@ -113,7 +113,7 @@ class Layers:
         A temperature of f squares of velocities scatters by sqrt(2 / f) of it even if all are independent.
         """
         frames = np.array(self._frames[settle:])
-        edges = np.linspace(0.0, self._height, self._number + 1) * scale.length
+        edges = np.linspace(0.0, self._height, self.number + 1) * scale.length
         out = Readings(height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
         if len(frames) < 2:
             return out
@@ -136,7 +136,7 @@ class Layers:
             if blocks < 2:
                 mean, error = block_average(values, len(frames))
             else:
-                mean, error = average_beside(values, slow, self._memory / self._lasted, blocks)
+                mean, error = average_beside(values, slow, self.memory / self._lasted, blocks)
             if name == "layer_temperature":  # blocks cannot tell the error where hardly any molecule has been seen
                 counted = np.maximum(freedom.sum(axis=0) * self._samples, 1e-9)
                 error = np.maximum(error, mean * np.sqrt(2.0 / counted))

@@ -51,9 +51,9 @@ class Mixing:
     """
 
     def __init__(self, right: NDArray[np.bool_], moments: dict[str, float], bins: int = 20) -> None:
-        self._right = np.asarray(right, np.bool_)
-        self._moments = moments
-        self._bins = bins
+        self.right = np.asarray(right, np.bool_)
+        self.moments = moments
+        self.bins = bins
         self._times: list[float] = []
         self._rows: list[tuple[float, float]] = []
         self._shares: dict[str, tuple[float, Array, Array]] = {}
@@ -67,13 +67,13 @@ class Mixing:
         radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
         self._length = float(parcel.length[0]) - 2.0 * radius
         across = (snapshot.position[:, 0] - radius) / self._length
-        sign = np.where(self._right, -1.0, 1.0)
+        sign = np.where(self.right, -1.0, 1.0)
         amplitude = float(np.mean(sign * np.cos(math.pi * across))) * math.pi / 2.0
-        place = np.clip((across * self._bins).astype(int), 0, self._bins - 1)
-        left, right = (np.bincount(place[chosen], minlength=self._bins) for chosen in (~self._right, self._right))
+        place = np.clip((across * self.bins).astype(int), 0, self.bins - 1)
+        left, right = (np.bincount(place[chosen], minlength=self.bins) for chosen in (~self.right, self.right))
         self._times.append(parcel.time)
         self._rows.append((amplitude, entropy_of_counts(left, right)))
-        for name, moment in self._moments.items():
+        for name, moment in self.moments.items():
             off = abs(parcel.time - moment)
             if name not in self._shares or off < self._shares[name][0]:
                 self._shares[name] = (off, left.astype(float), (left + right).astype(float))
@@ -83,7 +83,7 @@ class Mixing:
         if not self._rows:
             return Readings()
         amplitude, entropy = np.array(self._rows).T
-        edges = np.linspace(0.0, self._length, self._bins + 1) * scale.length
+        edges = np.linspace(0.0, self._length, self.bins + 1) * scale.length
         found = Readings(
             mixing_amplitude=amplitude,
             mixing_entropy=entropy / math.log(2.0),
@@ -91,7 +91,7 @@ class Mixing:
             distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),
         )
         for name, (_, left, both) in self._shares.items():
-            expected, scatter = expected_share(self._bins, MOMENTS[name])
+            expected, scatter = expected_share(self.bins, MOMENTS[name])
             found[f"left_gas_share_{name}"] = left / np.where(both > 0.0, both, math.nan)
             # two molecules as theory expects them are added, so that a bin of one gas alone has an error, too, but not
             # too large a one; the factor corrects the scatter that they take from the other molecules

@@ -49,8 +49,8 @@ class MoistLift:
     ) -> None:
         self._driver = driver
         self.environment = environment
-        self._curve = curve
-        self._scatter = scatter
+        self.curve = curve
+        self.scatter = scatter
         self._looks: list[tuple[float, float]] = []
         self._seen: list[list[tuple[float, float]]] = []
         self._rows: list[tuple[float, ...]] = []
@@ -72,7 +72,7 @@ class MoistLift:
         time, volume, ceiling, velocity = np.array(self._rows).T
         kT, p = np.moveaxis(np.array(self._seen), 2, 0)
         temperature, pressure = kT * scale.temperature, p * scale.pressure
-        expected = self._curve(pressure.ravel()).reshape(pressure.shape)
+        expected = self.curve(pressure.ravel()).reshape(pressure.shape)
         parcel_temperature = temperature.mean(axis=1)
         parcel_pressure = np.exp(np.log(pressure).mean(axis=1))
         around = self.environment
@@ -81,7 +81,7 @@ class MoistLift:
         outside = np.array([around.pressure(t) for t in middle])
         return Readings(
             parcel_temperature=parcel_temperature,
-            parcel_temperature_se=self._scatter(outside) * parcel_temperature,
+            parcel_temperature_se=self.scatter(outside) * parcel_temperature,
             parcel_pressure=parcel_pressure,
             parcel_potential_temperature=parcel_temperature * (REFERENCE_PRESSURE / parcel_pressure) ** (2.0 / 7.0),
             parcel_volume=volume * scale.length**3 * scale.weight,

@@ -42,7 +42,7 @@ def wall_laws(parcel: Any) -> tuple[str, ...]:
     >>> wall_laws(ParcelSet([[1, 1, 1]], [[1, 0, 0]], length=(4, 4, 3), walls=walls))[4:]
     ('heat_bath', 'piston')
     """
-    return tuple(LAWS[int(law)] for law in parcel._walls.law)
+    return tuple(LAWS[int(law)] for law in parcel.laws)
 
 
 class Molecules:

@@ -33,8 +33,8 @@ class Nuclei:
     """
 
     def __init__(self, width: float, radius: ArrayLike) -> None:
-        self._width = width
-        self._radius = np.asarray(radius, np.float64)
+        self.width = width
+        self.radius = np.asarray(radius, np.float64)
         self._looks: list[tuple[float, float]] = []
         self._humid: list[tuple[float, float]] = []
         self._held: list[np.ndarray] = []
@@ -64,9 +64,9 @@ class Nuclei:
         for frame, each in enumerate(self._held):
             held[frame, : len(each)] = each
         pressure, kT = np.array(self._humid).T
-        salted, pure = np.array(self._mean).T * scale.length / self._width
+        salted, pure = np.array(self._mean).T * scale.length / self.width
         found = Readings(
-            radius=self._radius,
+            radius=self.radius,
             drop_molecule_count=held,
             saturation_ratio=pressure * scale.pressure / law.saturation_vapor_pressure(kT * scale.temperature),
         )

@@ -27,8 +27,8 @@ class Speeds:
     """
 
     def __init__(self, edges: Array) -> None:
-        self._edges = np.asarray(edges, np.float64)
-        self._counts = np.zeros(self._edges.size - 1)
+        self.edges = np.asarray(edges, np.float64)
+        self._counts = np.zeros(self.edges.size - 1)
         self._seen = 0
         self._sum = 0.0
         self._mean: list[float] = []
@@ -36,20 +36,20 @@ class Speeds:
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules by speed."""
-        self._counts += speed_counts(snapshot, self._edges)
+        self._counts += speed_counts(snapshot, self.edges)
         self._seen += parcel.number
         self._sum += float(np.sqrt((snapshot.velocity**2).sum(axis=1)).sum())
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the counts of a frame."""
-        self._frames.append(self._counts / max(self._seen, 1) / np.diff(self._edges))
+        self._frames.append(self._counts / max(self._seen, 1) / np.diff(self.edges))
         self._mean.append(self._sum / max(self._seen, 1))
         self._counts = np.zeros_like(self._counts)
         self._seen, self._sum = 0, 0.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the mean speeds, and the histogram with the standard errors of 20 blocks."""
-        edges = self._edges * scale.velocity
+        edges = self.edges * scale.velocity
         out = Readings(speed=0.5 * (edges[1:] + edges[:-1]), speed_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
         out["mean_molecular_speed"] = np.array(self._mean) * scale.velocity
         frames = np.array(self._frames[settle:])
