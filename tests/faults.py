@@ -1,7 +1,7 @@
 """Deliberate faults: each is put into a copy of the checkout, where the test that it names must fail.
 
 ``python -m tests.faults [NAME ...]`` tries all faults of ``faults.toml``, or those named, prints a table, and returns 1
-if one survives. ``--list`` prints what each of them is, and changes nothing.
+if one survives, or if the list does not fit the code. ``--list`` prints what each of them is.
 
 The faults are of the kind that a person makes: a factor, a sign, a wall, a frame, a unit. A test that is shortened must
 still catch those that name it. One edit of the engine compiles its kernels anew, so each names a small test.
@@ -25,6 +25,16 @@ def faults():
     return tomllib.loads((ROOT / "tests" / "faults.toml").read_text(encoding="utf-8"))
 
 
+def stale(fault):
+    """Return a sentence if a fault cannot be made in the present code, or its test does not exist; else nothing."""
+    times = (ROOT / fault["file"]).read_text(encoding="utf-8").count(fault["old"])
+    if times != 1:
+        return f"the text to replace stands {times} times in {fault['file']}"
+    file, _, name = fault["test"].partition("::")
+    there = (ROOT / file).exists() and f"def {name.partition('[')[0]}(" in (ROOT / file).read_text(encoding="utf-8")
+    return "" if there else f"there is no {fault['test']}"
+
+
 def tested(copy, *tests):
     """Run tests in the copy; return the status of pytest (0 if all pass, 1 if some fail) and what it said."""
     # no byte code is kept: it is known by second and size, which a fault may share with what it replaces
@@ -39,8 +49,6 @@ def survives(fault, copy):
     """Put a fault into the copy and take it out again; return a sentence if its test does not fail, else nothing."""
     file = copy / fault["file"]
     sound = file.read_text(encoding="utf-8")
-    if sound.count(fault["old"]) != 1:
-        return f"the text to replace stands {sound.count(fault['old'])} times in {fault['file']}"
     file.write_text(sound.replace(fault["old"], fault["new"]), encoding="utf-8")
     try:
         status, said = tested(copy, fault["test"])
@@ -59,6 +67,10 @@ def main(words):
         for name, fault in chosen.items():
             print(f"{name:24} {fault['file']}: {fault['wrong']}\n{'':24} {fault['test']}")
         return 0
+    old = [f"{name}: {said}" for name, fault in chosen.items() if (said := stale(fault))]
+    if old:
+        print("The list is older than the code:", *old, sep="\n")
+        return 1
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "copy"
         shutil.copytree(ROOT, copy, ignore=LEFT_OUT)

@@ -68,7 +68,7 @@ def test_molecules_become_as_warm_as_walls_that_are_made_warmer(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_change_of_gravity_is_in_the_ledger_and_moves_nobody(engine):
+def test_a_change_of_gravity_is_in_the_energy_budget_and_moves_no_molecule(engine):
     gas = box(engine, walls=COLUMN, gravity=0.1)
     gas.advance(20.0)
     before = gas.snapshot()
@@ -104,7 +104,7 @@ def test_what_is_set_to_what_it_is_changes_not_a_bit(engine):
     assert np.array_equal(left.wall_heat, touched.wall_heat)
 
 
-def test_a_mist_between_warmer_walls_evaporates_and_its_books_close():
+def test_a_mist_between_warmer_walls_evaporates_and_its_energy_budget_closes():
     rng = np.random.default_rng(2)
     length = (12.0,) * 3
     moist = MoistParcelSet(

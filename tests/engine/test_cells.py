@@ -150,7 +150,7 @@ def test_a_boundary_is_the_entry_into_one_cell_or_the_way_out_of_one(made):
 @pytest.mark.parametrize("share", [0.0, 1e-300, 1e-13, 0.25, 0.5, 1.0, 1.5])
 @pytest.mark.parametrize("periodic", [(False,) * 3, (True,) * 3])
 @pytest.mark.parametrize("margin", [0.0, 1e-7])
-def test_spheres_that_just_fit_their_cells_are_no_exception(share, periodic, margin):
+def test_boundaries_are_right_for_spheres_that_just_fit_their_cells(share, periodic, margin):
     # a radius of half a cell, or a whole one, makes boundaries coincide
     sides = (24.0, 24.0, 24.0)
     width = 24.0 / grid_of(sides, [0.1, 0.3], periodic=periodic, molecules=4000).number[0]
@@ -166,7 +166,7 @@ def test_cells_are_few_enough_and_slots_can_be_counted(made):
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_a_periodic_box_of_two_diameters_is_lawful_and_a_shorter_one_is_refused(axis):
+def test_a_periodic_box_of_two_diameters_is_allowed_and_a_shorter_one_is_refused(axis):
     walls, sides = np.arange(3) == axis, np.full(3, 5.0)
     sides[axis] = 2.0
     grid = grid_of(sides, [0.5], periodic=tuple(walls), molecules=2)
@@ -202,7 +202,7 @@ def test_sizes_that_differ_by_less_than_a_tenth_share_a_table():
     assert len(tops) < 80
 
 
-def test_a_cell_lists_whom_it_is_told_until_it_is_told_otherwise():
+def test_a_cell_lists_what_was_added_until_it_is_removed():
     random = np.random.default_rng(8)
     stride, cells = 16, 6
     row = np.zeros(stride * cells, np.uint32)

@@ -135,7 +135,7 @@ def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(
 
 @pytest.mark.parametrize("number", range(4))
 @pytest.mark.parametrize("walls", [TURNING, ALL_LAWS])
-def test_a_handful_of_molecules_is_a_gas_too(number, walls):
+def test_a_box_of_dsmc_may_hold_three_molecules_or_none(number, walls):
     gas = box(number, 5.0, walls=walls, rotation=2, gravity=0.1 if walls == ALL_LAWS else 0.0)
     gas.advance(500.0)
     assert gas.steps > 0
@@ -146,7 +146,7 @@ def test_a_handful_of_molecules_is_a_gas_too(number, walls):
 
 
 @pytest.mark.parametrize("dt", [0.01, 1.0, 10.0])
-def test_nobody_is_ever_outside(dt):
+def test_no_molecule_of_dsmc_leaves_the_box(dt):
     gas = box(500, 12.0, walls=(*SMOOTH[:4], HeatBath(1.0), Piston(-0.2)), gravity=5.0, dt=dt)
     for time in np.arange(1.0, 30.0, 2.0):
         gas.advance(time)

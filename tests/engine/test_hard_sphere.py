@@ -75,7 +75,7 @@ def test_a_light_molecule_bounces_off_a_heavy_one_as_off_a_wall():
     assert change == pytest.approx((6.0, 0.0, 0.0))
 
 
-def test_shared_energy_is_the_same_energy_and_each_gets_its_due():
+def test_shared_energy_is_kept_and_divided_by_degrees_of_freedom():
     for dimensions in [2.0, 3.0]:
         for rotations in [(0.0, 0.0), (2.0, 0.0), (0.0, 3.0), (2.0, 2.0), (2.0, 3.0)]:
             state = random_state(3)

@@ -48,7 +48,7 @@ def test_the_sites_are_chosen_at_random_where_there_are_more_than_molecules():
     assert distances(one)[np.triu_indices(95, 1)].min() >= 1.0
 
 
-def test_nobody_needs_no_site():
+def test_no_molecules_need_no_site():
     assert lattice_positions((1.0, 1.0, 1.0), []).shape == (0, 3)
 
 

@@ -130,7 +130,7 @@ def test_a_part_that_sticks_leaves_in_the_same_proportion():
 
 
 @pytest.mark.parametrize("nuclei", [0.0, 50.0])
-def test_none_leaves_where_there_is_none_or_it_cannot_pay(nuclei):
+def test_no_molecule_leaves_an_empty_liquid_or_one_with_less_than_the_binding_energy(nuclei):
     assert rate_at(ledger_of(0, nuclei=nuclei), 1e6) == 0.0
     for energy in (0.0, -1e-17, 0.5 * PHI, PHI, math.nextafter(PHI, 0.0)):
         assert rate_at(ledger_of(1, nuclei=nuclei), energy) == 0.0
@@ -175,7 +175,7 @@ def test_gamma_variates_of_any_shape_have_their_moments(shape):
 
 
 @pytest.mark.parametrize(("number", "nuclei"), [(1, 0.0), (1, 10.0), (2, 0.0), (5, 50.0)])
-def test_what_leaves_takes_its_share_by_the_number_of_degrees(number, nuclei):
+def test_a_molecule_that_leaves_takes_energy_by_its_degrees_of_freedom(number, nuclei):
     ledger = ledger_of(number, nuclei=nuclei)
     ledger.energy[THERMAL] = energy = PHI + 4.0
     state = random_state(18)
@@ -197,7 +197,7 @@ def test_what_leaves_takes_its_share_by_the_number_of_degrees(number, nuclei):
 
 @pytest.mark.parametrize("rotation", [0.0, 2.0, 3.0])
 @pytest.mark.parametrize(("number", "nuclei"), [(0, 50.0), (2, 0.0)])
-def test_what_only_touches_shares_all_energy_with_the_liquid(rotation, number, nuclei):
+def test_a_molecule_that_does_not_stick_shares_all_energy_with_the_liquid(rotation, number, nuclei):
     ledger = ledger_of(number, kT=0.5, nuclei=nuclei)
     state = random_state(19)
     capacity = C_L * number + nuclei
@@ -212,7 +212,7 @@ def test_what_only_touches_shares_all_energy_with_the_liquid(rotation, number, n
     assert ledger.energy[THERMAL] == 0.5 * capacity
 
 
-def test_where_nothing_is_to_share_with_what_touches_keeps_its_energy():
+def test_a_molecule_keeps_its_energy_where_there_is_no_liquid_to_share_with():
     ledger = ledger_of(0)
     flight, spin = exchange(ledger, 2.0, 3.0, random_state())
     assert flight + spin == pytest.approx(2.0, rel=1e-14)
@@ -233,7 +233,7 @@ def test_the_spectrum_of_a_liquid_that_was_cold_at_the_start_keeps_to_its_bins()
 # ------------------------------------------------------------------ counters
 
 
-def test_who_comes_and_leaves_takes_the_binding_energy_along():
+def test_condensing_adds_the_binding_energy_and_evaporating_removes_it():
     ledger = ledger_of(2, nuclei=5.0)
     start = float(ledger.energy[THERMAL])
     condense(ledger, 1.25)

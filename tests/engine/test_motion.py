@@ -26,7 +26,7 @@ def test_uniform_motion_leaves_at_the_end_it_heads_for(share, v):
         assert x + v * time == pytest.approx(high if end else low, abs=1e-12)
 
 
-def test_who_is_already_outside_by_rounding_leaves_at_once():
+def test_a_molecule_outside_by_rounding_leaves_at_once():
     assert time_to_leave(2.0 + 1e-15, 1.0, 0.0, 2.0) == (0.0, 1)
     assert time_to_leave(-1e-15, -1.0, 0.0, 2.0) == (0.0, 0)
     assert time_to_leave_in_gravity(-1e-15, -1.0, 0.0, 2.0, 1.0) == (0.0, 0)

@@ -40,7 +40,7 @@ def test_two_that_overlap_across_a_periodic_face_are_pushed_apart_through_it(axi
     assert ((x[:, axis] >= 0.0) & (x[:, axis] < 6.0)).all()
 
 
-def test_nobody_is_pushed_through_a_wall():
+def test_no_molecule_is_pushed_through_a_wall():
     random = np.random.default_rng(3)
     x = 0.5 + 3.0 * random.random((20, 3))
     while pushed(x, np.full(20, 0.5), np.full(3, 4.0)):

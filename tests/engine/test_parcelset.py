@@ -183,7 +183,7 @@ def test_a_piston_that_has_given_way_is_not_met_where_it_would_have_been():
 
 
 @many_events
-def test_a_crowd_in_one_cell_finds_room():
+def test_many_molecules_in_one_cell_get_a_longer_row():
     random = np.random.default_rng(2)
     position = lattice(600, (10, 10, 10), 1.0)
     velocity = (np.array([0.3, 0.3, 0.3]) - position) * random.uniform(0.97, 1.03, (600, 1))
@@ -302,7 +302,7 @@ def test_only_a_piston_can_be_moved_and_at_a_finite_velocity():
 
 
 @many_events
-def test_molecules_that_come_to_rest_on_a_floor_are_told_of():
+def test_a_floor_so_cold_that_molecules_come_to_rest_is_named():
     cold = (*SMOOTH[:4], HeatBath(1e-40), Piston())
     made = box("piston", number=3, driver=None, walls=cold, velocity=np.zeros((3, 3)), gravity=50.0)
     with pytest.raises(StalledError, match="z_low at kT = 1e-40 is too cold"):
@@ -310,7 +310,7 @@ def test_molecules_that_come_to_rest_on_a_floor_are_told_of():
 
 
 @many_events
-def test_a_molecule_without_room_is_told_of_and_not_its_walls():
+def test_a_side_that_leaves_a_molecule_no_room_is_named():
     baths = (*SMOOTH[:4], HeatBath(1.0), HeatBath(1.0))
     made = box("equal", number=2, walls=baths, length=(5.5, 5.5, 1.0), position=[[2.0, 2.0, 0.5], [4.0, 4.0, 0.5]])
     with pytest.raises(StalledError, match=r"length = 1 along z leaves a diameter of 1 no room"):

@@ -106,7 +106,7 @@ def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypa
 
 @many_events
 @pytest.mark.parametrize("name", ["mist", "pool", pytest.param("periodic", marks=pytest.mark.validate)])
-def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
+def test_a_molecule_that_evaporates_may_appear_anywhere(name, monkeypatch):
     monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
     sides = np.array([4.0, 5.0, 6.0])
     volatile = water(2.0, binding_energy=2.0, diameter=DIAMETER)

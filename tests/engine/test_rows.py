@@ -200,7 +200,7 @@ def test_no_contact_of_a_molecule_at_a_thousand_thermal_speeds_is_missed():
 
 
 @many_events
-def test_a_copy_of_one_who_is_faster_than_the_bound_is_nowhere():
+def test_a_molecule_faster_than_the_bound_has_no_copy():
     """Rounding would rarely make it miss a contact, so no run would show the error: the stored values are checked."""
     made = gas(300, (21.0,) * 3)
     made["velocity"][150] = 1000.0 * np.array([0.6, 0.48, 0.64])
@@ -213,7 +213,7 @@ def test_a_copy_of_one_who_is_faster_than_the_bound_is_nowhere():
 
 
 @many_events
-def test_none_is_missed_while_walls_heat_a_gas_a_thousandfold():
+def test_no_contact_is_missed_while_walls_heat_a_gas_a_thousandfold():
     walls = (HeatBath(1000.0),) * 2 + (Specular(),) * 4
     parcel = ParcelSet(**gas(300, (21.0,) * 3, walls=walls))
     assert parcel._modes.rows
@@ -223,7 +223,7 @@ def test_none_is_missed_while_walls_heat_a_gas_a_thousandfold():
 
 
 @many_events
-def test_none_is_missed_under_strong_gravity_and_a_piston_that_crushes():
+def test_no_contact_is_missed_under_strong_gravity_and_a_piston_that_comes_down():
     # a hundred scale heights from floor to ceiling, then a tenth of the height
     parcel = ParcelSet(**gas(500, (16.0, 16.0, 60.0), walls=(*SMOOTH[:5], Piston()), gravity=1.5))
     assert parcel._modes.rows
@@ -239,7 +239,7 @@ def test_none_is_missed_under_strong_gravity_and_a_piston_that_crushes():
 
 
 @many_events
-def test_none_is_missed_where_layers_follow_molecules_that_fall():
+def test_no_contact_is_missed_where_layers_follow_molecules_that_fall():
     # spread evenly over ten scale heights: with the layers of equilibrium, rows high up would be too short
     parcel = ParcelSet(**gas(800, (24.0, 24.0, 200.0), walls=SMOOTH, gravity=0.3))
     layers = []
@@ -265,7 +265,7 @@ def test_sizes_that_fit_the_cells_are_met_as_all_pairs_say():
 
 
 @many_events
-def test_those_who_follow_a_ceiling_up_do_not_plan_anew_without_end():
+def test_molecules_that_follow_a_rising_ceiling_are_not_predicted_again_and_again():
     # the first to come into the cells above the old ceiling are few: a layer is as dense as what is in all of it
     parcel = ParcelSet(**gas(500, (16.0, 16.0, 30.0), walls=(*SMOOTH[:5], Piston(0.5)), gravity=1e-9))
     parcel.advance(20.0)

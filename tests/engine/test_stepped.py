@@ -175,7 +175,7 @@ def test_a_gas_meets_and_presses_as_its_pairs_do_and_less_where_it_is_dense(dime
 
 
 @many_steps
-def test_without_the_approach_test_pairs_cling_to_each_other_and_energy_does_not_tell():
+def test_without_the_test_of_approach_pairs_collide_in_every_step_and_keep_their_energy():
     # alone, a pair leaves by the mirror image of the way it came, in the one step that it was in overlap
     assert abs(scattered(0.0125, 3, 20_000, 24, rule="every-overlap", steps=8)[0]) < 0.01
     # in a gas a third molecule comes between, and the two then swap in every step, for ever deeper and outward again;
@@ -374,7 +374,7 @@ def test_walls_give_their_temperature_however_long_the_step_because_those_emitte
 @many_steps
 @pytest.mark.parametrize("walls", ["mirror", "fold", "flip", "clamp", "undo"])
 @pytest.mark.parametrize("motion", ["parabola", "euler"])
-def test_the_energy_budget_closes_and_nobody_is_outside_whatever_the_rules(walls, motion):
+def test_the_energy_budget_closes_and_no_molecule_is_outside_by_any_rules(walls, motion):
     facts = ALL_AT_ONCE | {"walls": (HeatBath(1.5), S, P, P, S, Piston())}
     box = gas(100, (9.0,) * 3, smooth_walls=walls, motion=motion, delta=0.2, **facts, **mixture(100))
     exchanged, furthest = 0.0, 0.0
@@ -411,7 +411,7 @@ def test_collisions_keep_energy_and_momentum_where_molecules_rotate():
 
 @many_steps
 @pytest.mark.parametrize("number", range(4))
-def test_few_molecules_are_no_exception(number):
+def test_a_stepped_box_may_hold_three_molecules_or_none(number):
     x = np.array([[1.0, 1.5, 1.5], [2.5, 1.5, 1.5], [1.7, 3.0, 1.7]])[:number]
     v = np.array([[1.0, 0.2, 0.1], [-1.0, 0.3, 0.2], [0.1, -1.0, 0.3]])[:number]
     box = parcel(x, v, length=(4.0,) * 3, delta=0.1)

@@ -19,7 +19,7 @@ def run(**settings):
     return outcome.dataset, {headline.name: headline for headline in outcome.headlines}, outcome
 
 
-def test_a_drop_grows_that_nobody_put_in_and_none_without_attraction():
+def test_a_drop_forms_from_vapour_and_none_without_attraction():
     with_it, _, outcome = run(molecules=400, duration="0.8 ns")
     without, *_ = run(molecules=400, duration="0.2 ns", **HARD)
     assert with_it.largest_drop_molecule_count[0] < 40

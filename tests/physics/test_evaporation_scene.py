@@ -64,7 +64,7 @@ def test_air_over_a_pool_ends_saturated_where_its_enthalpy_says(settings):
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_hardly_anything_evaporates_in_the_cold_so_nothing_cools(seed):
+def test_in_the_cold_hardly_anything_evaporates_and_nothing_cools(seed):
     # in every second run no molecule leaves the pool, and then there is no humidity to compare
     outcome = run(molecules=1000, pool=200, duration=6.0, temperature=-60.0, seed=seed)
     agree(outcome)
@@ -130,7 +130,7 @@ def test_the_work_of_the_piston_is_that_of_a_constant_pressure_but_for_what_it_i
     assert np.std(losses, ddof=1) < 0.04
 
 
-def test_those_that_leave_have_the_binding_energy_and_the_flux_of_a_vapour():
+def test_molecules_that_leave_have_the_binding_energy_and_the_energies_of_a_flux():
     outcome = run(molecules=2000, pool=2000, humidity=100.0, duration=8.0, temperature=50.0)
     data = outcome.dataset
     width = np.diff(data.energy_bnds.values)[:, 0]

@@ -266,7 +266,7 @@ def test_discs_below_a_piston_press_as_hard_as_they_are_told(gas):
     assert abs(mean - pressure) <= 4.0 * error
 
 
-def test_a_piston_that_changes_its_mind_at_every_moment_does_no_harm(gas, out_of_place):
+def test_a_piston_with_a_new_random_velocity_every_moment_keeps_molecules_inside(gas, out_of_place):
     rng = np.random.default_rng(55)
     box = gas(200, (6.0, 6.0, 10.0), walls=(S,) * 5 + (Piston(),), diameter=0.7, seed=55)
     for _ in range(400):

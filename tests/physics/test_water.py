@@ -242,7 +242,7 @@ def test_in_dense_air_the_partial_pressure_is_that_of_saturation(kind, walls, op
 
 
 @pytest.mark.validate
-def test_over_a_pool_in_dense_air_the_vapour_is_thinner_by_the_crowd_at_the_edges_of_the_floor():
+def test_over_a_pool_in_dense_air_edges_of_the_floor_make_the_vapour_thinner():
     kind, walls, options = POOL
     open_sides = ((Periodic(),) * 4 + walls[4:], lambda filled: 1.0)
     for sides, expected in ((walls, thinned_by_edges), open_sides):

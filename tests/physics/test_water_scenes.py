@@ -94,7 +94,7 @@ def test_a_file_of_a_scene_is_verified_and_the_same_seed_gives_the_same_numbers(
 
 @pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
 @pytest.mark.parametrize("extreme", [DRY, COLD, FEW], ids=["dry", "cold", "few"])
-def test_the_books_balance_at_the_ends_of_the_scale(scene, extreme):
+def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     outcome = run(scene, **extreme[scene])
     is_sound(outcome)
     assert outcome.headlines
@@ -263,7 +263,7 @@ def test_what_cannot_be_ends_with_status_2_and_what_to_type_instead(scene, given
         ("evaporation", {"molecules": 400, "pool": 60, "duration": 2.0}),
     ],
 )
-def test_molecules_that_are_saved_keep_their_place_and_those_in_the_liquid_are_nowhere(scene, settings, tmp_path):
+def test_saved_molecules_keep_their_number_and_have_no_place_in_the_liquid(scene, settings, tmp_path):
     outcome = runner.execute(runner.prepare(scene, settings, save_molecules=True))
     data = read(write(outcome.dataset, tmp_path / "molecules.nc"))
     nowhere = np.isnan(data.molecule_speed.values)
