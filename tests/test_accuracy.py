@@ -65,16 +65,11 @@ def command(*words):
 
 def test_a_wish_is_a_target_or_the_largest_error():
     cases = [
-        ("sketch", TARGETS["sketch"]),
-        (" Lecture ", TARGETS["lecture"]),
-        ("0.5K", Target("0.5K", kelvin=0.5)),
-        ("0.5 K", Target("0.5K", kelvin=0.5)),
-        (".5k", Target(".5K", kelvin=0.5)),
-        ("2e-1K", Target("2e-1K", kelvin=0.2)),
-        ("2%", Target("2%", share=0.02, absolute=True)),
-        ("2 %", Target("2%", share=0.02, absolute=True)),
-        ("100%", Target("100%", share=1.0, absolute=True)),
-    ]
+        ("sketch", TARGETS["sketch"]), (" Lecture ", TARGETS["lecture"]), ("0.5K", Target("0.5K", kelvin=0.5)),
+        ("0.5 K", Target("0.5K", kelvin=0.5)), (".5k", Target(".5K", kelvin=0.5)),
+        ("2e-1K", Target("2e-1K", kelvin=0.2)), ("2%", Target("2%", share=0.02, absolute=True)),
+        ("2 %", Target("2%", share=0.02, absolute=True)), ("100%", Target("100%", share=1.0, absolute=True)),
+    ]  # fmt: skip
     for text, target in cases:
         assert parse(text) == target
 
@@ -194,16 +189,10 @@ def headline(value, **known):
 
 def test_a_known_bias_excuses_a_misfit_to_its_side_alone():
     cases = [
-        (300.59, {}, True),
-        (300.7, {}, False),
-        (302.5, {"bias": 2.0}, True),
-        (302.7, {"bias": 2.0}, False),
-        (302.7, {"bias": 2.0, "bias_se": 0.1}, True),
-        (299.3, {"bias": 2.0}, False),
-        (299.3, {"bias": -2.0}, True),
-        (300.0, {"bias": 2.0}, True),
-        (math.nan, {"bias": 2.0}, False),
-    ]
+        (300.59, {}, True), (300.7, {}, False), (302.5, {"bias": 2.0}, True), (302.7, {"bias": 2.0}, False),
+        (302.7, {"bias": 2.0, "bias_se": 0.1}, True), (299.3, {"bias": 2.0}, False), (299.3, {"bias": -2.0}, True),
+        (300.0, {"bias": 2.0}, True), (math.nan, {"bias": 2.0}, False),
+    ]  # fmt: skip
     for value, known, agrees in cases:
         assert headline(value, **known).agrees is agrees
 

@@ -46,13 +46,6 @@ def box_of(position, **others):
     return plain._replace(**others)
 
 
-def test_no_more_molecules_are_drawn_than_can_be_told_apart():
-    many = picture(box_of(np.random.default_rng(1).random((2, 9000, 3)) * 1e-7))
-    many.artists(1)
-    assert many.molecules.get_offsets().shape == (4000, 2)
-    assert many.legend()[0].startswith("4000 of 9000 ")
-
-
 def test_water_and_drops_are_marked_and_molecules_in_the_liquid_are_not_drawn():
     position = np.full((1, 3, 3), 3e-8)
     position[0, 2] = np.nan

@@ -30,18 +30,11 @@ def test_a_choice_is_spelled_as_it_is_read_and_presets_by_their_names():
 
 def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
     cases = [
-        ("exakt", "exact"),
-        ("classic", "stepped:applet"),
-        ("classic:delta=0.2", "stepped:applet"),
-        ("", "exact"),
-        ("stepped:", "stepped"),
-        ("stepped:delta", "stepped:delta=value"),
-        ("stepped:delta=soon", "stepped:delta="),
-        ("stepped:delta=-1", "stepped:delta="),
-        ("stepped:delta=0.1,delta=0.2", 'stepped:delta" once'),
-        ("stepped:motion=eule", "stepped:motion=euler"),
-        ("dsmc:threads=0", "dsmc:threads=1"),
-    ]
+        ("exakt", "exact"), ("classic", "stepped:applet"), ("classic:delta=0.2", "stepped:applet"), ("", "exact"),
+        ("stepped:", "stepped"), ("stepped:delta", "stepped:delta=value"), ("stepped:delta=soon", "stepped:delta="),
+        ("stepped:delta=-1", "stepped:delta="), ("stepped:delta=0.1,delta=0.2", 'stepped:delta" once'),
+        ("stepped:motion=eule", "stepped:motion=euler"), ("dsmc:threads=0", "dsmc:threads=1"),
+    ]  # fmt: skip
     for text, fix in cases:
         with pytest.raises(SettingError, match=f'give engine="{fix}'):
             choose(text)

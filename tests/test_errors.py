@@ -58,22 +58,11 @@ class Stranger:
 
 def test_any_value_is_shown_on_one_short_printable_line():
     cases = [
-        ("25 degC", "25 degC"),
-        ("25°C", "25°C"),
-        ("", '""'),
-        (" 25", '" 25"'),
-        ("a\nb\x1b[31m\u202e", "a\\nb\\x1b[31m\\u202e"),
-        ("\ud800", "\\ud800"),
-        ("x" * 61, '"' + "x" * 60 + '..."'),
-        (True, "True"),
-        (2**63, "9223372036854775808"),
-        (10**60, "about 1e60"),
-        (10**400, "about 1e400"),
-        (10**400 - 1, "about 1e399"),
-        (-(10**4000), "about -1e4000"),
-        (float("nan"), "nan"),
-        ([1, 2], "[1, 2]"),
+        ("25 degC", "25 degC"), ("25°C", "25°C"), ("", '""'), (" 25", '" 25"'),
+        ("a\nb\x1b[31m\u202e", "a\\nb\\x1b[31m\\u202e"), ("\ud800", "\\ud800"), ("x" * 61, '"' + "x" * 60 + '..."'),
+        (True, "True"), (2**63, "9223372036854775808"), (10**60, "about 1e60"), (10**400, "about 1e400"),
+        (10**400 - 1, "about 1e399"), (-(10**4000), "about -1e4000"), (float("nan"), "nan"), ([1, 2], "[1, 2]"),
         (Stranger(), "a Stranger"),
-    ]
+    ]  # fmt: skip
     for value, text in cases:
         assert shown(value) == text

@@ -288,29 +288,13 @@ def classic(path):
         file.title = "another program's"
 
 
-def newer(path):
-    output.write(lifting().assign_attrs(atmosbox_format=provenance.FORMAT + 1), path)
-
-
-def strange(path):
-    output.write(lifting().assign_attrs(atmosbox_format="two"), path)
+def with_attributes(**changed):
+    return lambda path: output.write(lifting().assign_attrs(changed), path)
 
 
 def truncated(path):
     whole = output.write(everything(), path).read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-
-
-def nested(path):
-    output.write(lifting().assign_attrs(atmosbox_parameters="[" * 3000), path)
-
-
-def listed(path):
-    output.write(lifting().assign_attrs(atmosbox_headlines='{"a": 1}'), path)
-
-
-def unnamed(path):
-    output.write(lifting().assign_attrs(atmosbox_headlines="[[]]"), path)
 
 
 def turned(path):
@@ -345,14 +329,10 @@ def deserted(path):
         file.createVariable("molecule_mass", "f8", ("molecule",))
 
 
-def missing(_path):
-    pass
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (missing, "does not exist: check the name"),
+        (lambda path: None, "does not exist: check the name"),
         (lambda path: path.mkdir(), "is a folder"),
         (lambda path: path.touch(), "is empty"),
         (lambda path: path.write_text("temperature, pressure\n"), "is no netCDF file, or a damaged one"),
@@ -363,12 +343,12 @@ def missing(_path):
         (truncated, "is no netCDF file, or a damaged one"),
         (foreign, "was written by another program"),
         (classic, "was written by another program"),
-        (newer, "format 2.*pip install --upgrade atmosbox"),
-        (strange, "format two"),
+        (with_attributes(atmosbox_format=provenance.FORMAT + 1), "format 2.*pip install --upgrade atmosbox"),
+        (with_attributes(atmosbox_format="two"), "format two"),
         (lambda path: os.mkfifo(path), "may not be read"),
-        (nested, "atmosbox_parameters .* is not as atmosbox writes it"),
-        (listed, "atmosbox_headlines .* is not as atmosbox writes it"),
-        (unnamed, "which its headlines name"),
+        (with_attributes(atmosbox_parameters="[" * 3000), "atmosbox_parameters .* is not as atmosbox writes it"),
+        (with_attributes(atmosbox_headlines='{"a": 1}'), "atmosbox_headlines .* is not as atmosbox writes it"),
+        (with_attributes(atmosbox_headlines="[[]]"), "which its headlines name"),
         (turned, "holds molecule_position as molecule x elapsed_time x axis"),
         (unitless, "does not say the units of elapsed_time"),
         (worded, "text in air_temperature, where numbers belong"),

@@ -22,39 +22,29 @@ from atmosbox.simulation import restart, runner
 from tests.few_frames import FRAMES, cut
 from tests.in_process import typed
 
-RUNS = {
-    "discs": ("elastic-collisions", {"duration": "5 s"}, None),
-    "walls": ("temperature", {"molecules": 60, "duration": "0.4 ns"}, None),
-    "applet": ("elastic-collisions", {"duration": "5 s"}, "stepped:applet-discs,delta=0.005"),
-    "column": ("atmosphere", {"molecules": 200, "duration": 3}, None),
-    "column by dsmc": ("atmosphere", {"molecules": 200, "duration": 3}, "dsmc"),
-    "piston": ("lifting-dry", {"molecules": 60, "ascent": 50.0}, None),
-    "in steps": ("lifting-dry", {"molecules": 60, "ascent": 30.0}, "stepped:delta=0.005"),
-    "mist": ("lifting-moist", {"molecules": 200, "ascent": 60.0}, None),
-    "mist by dsmc": ("lifting-moist", {"molecules": 200, "ascent": 60.0}, "dsmc"),
-    "attraction": ("attraction", {"molecules": 100, "duration": "0.1 ns"}, None),
-    "liquid": ("condensation", {"molecules": 200, "duration": "0.3 ns"}, None),
-    "drops": ("condensation", {"molecules": 200, "duration": "0.3 ns", "drops": 2}, None),
-    "rain": ("mountains", {"molecules": 200, "travel": 40}, None),
+RUNS = {  # scene, molecules and length of a small box, and of one that takes seconds, so that it can be killed; engine
+    "discs": ("elastic-collisions", {"duration": ("5 s", "7500 s")}, (60, 400), None),
+    "walls": ("temperature", {"duration": ("0.4 ns", "200 ns")}, (60, 4000), None),
+    "applet": ("elastic-collisions", {"duration": ("5 s", "70 s")}, (60, 400), "stepped:applet-discs,delta=0.005"),
+    "column": ("atmosphere", {"duration": (3, 1200)}, (200, 3000), None),
+    "column by dsmc": ("atmosphere", {"duration": (3, 16000)}, (200, 4000), "dsmc"),
+    "piston": ("lifting-dry", {"ascent": (50, 3000)}, (60, 8000), None),
+    "in steps": ("lifting-dry", {"ascent": (30, 250)}, (60, 2000), "stepped:delta=0.005"),
+    "mist": ("lifting-moist", {"ascent": (60, 2500)}, (200, 4000), None),
+    "mist by dsmc": ("lifting-moist", {"ascent": (60, 2000)}, (200, 20000), "dsmc"),
+    "attraction": ("attraction", {"duration": ("0.1 ns", "4 ns")}, (100, 2000), None),
+    "liquid": ("condensation", {"duration": ("0.3 ns", "300 ns")}, (200, 2000), None),
+    "drops": ("condensation", {"duration": ("0.3 ns", "200 ns"), "drops": (2, 2)}, (200, 2000), None),
+    "rain": ("mountains", {"travel": (40, 2000)}, (200, 2000), None),
 }
 
 
-# The same boxes, so large that each takes some seconds, so that a process can be killed meanwhile.
-LARGE = {
-    "discs": {"molecules": 400, "duration": "7500 s"},
-    "walls": {"molecules": 4000, "duration": "200 ns"},
-    "strips": {"molecules": 400, "duration": "70 s"},
-    "column": {"molecules": 3000, "duration": 1200},
-    "column by dsmc": {"molecules": 4000, "duration": 16000},
-    "piston": {"molecules": 8000, "ascent": 3000},
-    "in steps": {"molecules": 2000, "ascent": 250},
-    "mist": {"molecules": 4000, "ascent": 2500},
-    "mist by dsmc": {"molecules": 20000, "ascent": 2000},
-    "attraction": {"molecules": 2000, "duration": "4 ns"},
-    "liquid": {"molecules": 2000, "duration": "300 ns"},
-    "drops": {"molecules": 2000, "duration": "200 ns", "drops": 2},
-    "rain": {"molecules": 2000, "travel": 2000},
-}
+def settings_of(name, large=False):
+    """Return the settings of a box."""
+    _, lengths, molecules, _ = RUNS[name]
+    return {"molecules": molecules[large]} | {key: value[large] for key, value in lengths.items()}
+
+
 KILLS = 56  # four for each box; if some boxes finish before their last kill, fifty kills are still made
 
 
@@ -102,10 +92,10 @@ def stopping(shares):
 
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_that_was_stopped_goes_on_bit_for_bit(name, tmp_path, monkeypatch):
-    scene, settings, engine = RUNS[name]
+    scene, _, _, engine = RUNS[name]
     monkeypatch.setattr(runner, "_BREATH", 0.0)
     cut(monkeypatch, {"temperature": (60, 10)})
-    prepared = runner.prepare(scene, settings, engine=engine, save_molecules=name in ("walls", "drops"))
+    prepared = runner.prepare(scene, settings_of(name), engine=engine, save_molecules=name in ("walls", "drops"))
     runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "whole.nc"), command="a test")
     checkpoint = Checkpoint(tmp_path / "stopped.nc", every_seconds=0.0)
     halts = stopping([0.3, 0.75])
@@ -189,10 +179,12 @@ def test_fifty_kills_of_the_command_change_nothing(tmp_path, request):
     seed = random.SystemRandom().randrange(2**32)
     report = request.config.getoption("--soak-report")
     total = 0
-    for place, name in enumerate(LARGE):
-        kills = KILLS // len(LARGE) + (place < KILLS % len(LARGE))
-        scene, _, engine = RUNS[name]
-        values = [word for pair in LARGE[name].items() for word in ("--set", "=".join(map(str, pair)))]
+    for place, name in enumerate(RUNS):
+        kills = KILLS // len(RUNS) + (place < KILLS % len(RUNS))
+        scene, _, _, engine = RUNS[name]
+        values = [
+            word for pair in settings_of(name, large=True).items() for word in ("--set", "=".join(map(str, pair)))
+        ]
         words = ["run", scene, *values, *(["--engine", engine] if engine else []), "--quiet", "--out", "x.nc"]
         with started(words, tmp_path / f"{place}-whole") as process:
             _, said = process.communicate()

@@ -63,6 +63,8 @@ def build(settings, engine=EXACT):
         os.kill(os.getpid(), signal.SIGKILL)
     if settings.molecules > 20 and "HOLD" in os.environ:
         time.sleep(600)
+    if Path(__file__).with_name("slow").exists():
+        time.sleep(0.2)
     return discs.build(settings, engine)
 '''
 
@@ -110,15 +112,11 @@ SETTINGS = scenarios.load("temperature").Settings
 def test_what_varies_is_typed_as_a_row_or_as_a_list():
     cases = [
         ("temperature=-10degC:40degC:6", (-10.0, 0.0, 10.0, 20.0, 30.0, 40.0)),
-        ("temperature=40degC:-10degC:3", (-10.0, 15.0, 40.0)),
-        ("temperature=273.15K:10:2", (0.0, 10.0)),
-        ("molecules=100:400:4", (100, 200, 300, 400)),
-        ("molecules=10:1000:3log", (10, 100, 1000)),
-        ("molecules = 400, 1e2,200", (100, 200, 400)),
-        ("molecules=7", (7,)),
-        ("pressure=0.1bar:10bar:3log", (100.0, 1000.0, 10000.0)),
-        ("start=maxwell", ("maxwell",)),
-    ]
+        ("temperature=40degC:-10degC:3", (-10.0, 15.0, 40.0)), ("temperature=273.15K:10:2", (0.0, 10.0)),
+        ("molecules=100:400:4", (100, 200, 300, 400)), ("molecules=10:1000:3log", (10, 100, 1000)),
+        ("molecules = 400, 1e2,200", (100, 200, 400)), ("molecules=7", (7,)),
+        ("pressure=0.1bar:10bar:3log", (100.0, 1000.0, 10000.0)), ("start=maxwell", ("maxwell",)),
+    ]  # fmt: skip
     for text, values in cases:
         (axis,) = parse_vary([text], SETTINGS)
         assert axis.values == values

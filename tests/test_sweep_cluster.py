@@ -10,29 +10,10 @@ from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read
 from atmosbox.sweep import plan, sweep, workers
 from tests.few_frames import cut
+from tests.test_sweep import SCENE
 
 distributed = pytest.importorskip("distributed")
 
-SCENE = '''"""Discs that leave a file for each run they begin."""
-
-import time
-from pathlib import Path
-
-from atmosbox.scene.engines import EXACT
-from atmosbox.scenarios.elastic_collisions import Settings, headlines, panels, theory
-from atmosbox.scenarios import elastic_collisions as discs
-
-title = "Discs"
-discs.FRAMES, discs.SETTLE = 60, 20
-assert headlines and panels and theory and Settings
-
-
-def build(settings, engine=EXACT):
-    (Path(__file__).parent / f"run-{settings.seed}-{time.monotonic_ns()}").touch()
-    if Path(__file__).with_name("slow").exists():
-        time.sleep(0.2)
-    return discs.build(settings, engine)
-'''
 UNUSED = "tcp://127.0.0.1:1"
 
 

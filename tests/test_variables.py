@@ -21,14 +21,10 @@ def test_a_companion_is_called_what_cf_calls_it():
 
 def test_every_temperature_says_whether_it_is_a_difference():
     cases = [
-        ("air_temperature", "temperature: on_scale"),
-        ("air_temperature_theory", "temperature: on_scale"),
-        ("air_temperature_se", "temperature: difference"),
-        ("air_temperature_tolerance", "temperature: difference"),
-        ("air_temperature_count", None),
-        ("air_pressure", None),
-        ("disc_mass", None),
-    ]
+        ("air_temperature", "temperature: on_scale"), ("air_temperature_theory", "temperature: on_scale"),
+        ("air_temperature_se", "temperature: difference"), ("air_temperature_tolerance", "temperature: difference"),
+        ("air_temperature_count", None), ("air_pressure", None), ("disc_mass", None),
+    ]  # fmt: skip
     for name, metadata in cases:
         assert variable(name).units_metadata == metadata
 

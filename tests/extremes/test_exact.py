@@ -8,14 +8,10 @@ import pytest
 
 from atmosbox.engine import (
     HeatBath,
-    PackingError,
     ParcelSet,
     Periodic,
-    Piston,
     Specular,
-    StalledError,
     maxwell_velocities,
-    packing_fraction,
     random_positions,
 )
 from tests.extremes.cases import Run
@@ -43,40 +39,6 @@ def sphere_box(number, length, *, seed=1, kT=1.0, diameter=1.0, mass=1.0, walls=
     x = random_positions(length, diameter, rng, periodic=periodic)
     v = maxwell_velocities(kT, mass, rng, exact=True)
     return ParcelSet(x, v, length=length, diameter=diameter, mass=mass, walls=walls, seed=seed, **options)
-
-
-def test_too_dense_a_random_start_is_refused():
-    side = (300 * math.pi / 6.0 / 0.66) ** (1.0 / 3.0)
-    with pytest.raises(PackingError, match=r"300 molecules fill 0\.\d+ of the space, too much for a random start"):
-        random_positions((side,) * 3, np.ones(300), np.random.default_rng(3), periodic=(True,) * 3)
-
-
-@pytest.mark.parametrize(
-    ("number", "side", "rotation"),
-    [
-        (4, 4.0, 2),
-        (100, 6.0, 2),
-        *(pytest.param(*box, 0, marks=pytest.mark.nightly) for box in ((20, 4.0), (100, 6.0))),
-    ],
-)
-def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(number, side, rotation):
-    walls = (S,) * 5 + (Piston(-2.0),)
-    energy = np.full(number, 0.5 * rotation)
-    box = sphere_box(number, (side, side, 12.0), walls=walls, rotation=rotation, rotational_energy=energy)
-    with pytest.raises(StalledError, match=r"the piston has come down to .* where it would crush the molecules"):
-        within(box, 6.0, 50_000_000)
-    RUN.checked(box)
-    assert packing_fraction(box.length, box.diameter) <= 0.6 + 1e-9
-    assert box.time <= 6.0
-    # and it does not go on from there
-    with pytest.raises(StalledError, match="crush"):
-        within(box, 7.0)
-    # but it may go back; the gas is extremely hot by now, so a short time is enough
-    box.set_piston_velocity(0.5)
-    ceiling, speed = box.ceiling, math.sqrt(sum(box.energy()) / number)
-    within(box, box.time + 0.01 / speed)
-    assert box.ceiling > ceiling
-    assert box.ledger() <= 1e-10
 
 
 def lone(place, velocity):

@@ -413,12 +413,7 @@ def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begin
     [
         ("temperature", {"molecules": 150}),
         pytest.param("attraction", {"molecules": 150}, marks=pytest.mark.nightly),
-        pytest.param("temperature", {"molecules": 61, "start": "equal"}, marks=pytest.mark.nightly),
         pytest.param("diffusion", {"molecules": 1001}, marks=pytest.mark.nightly),
-        pytest.param("lifting-dry", {"molecules": 129, "rotation": False}, marks=pytest.mark.nightly),
-        pytest.param(
-            "atmosphere", {"start": "equilibrium", "molecules": 801, "floor": "isolated"}, marks=pytest.mark.nightly
-        ),
         pytest.param("atmosphere", {"molecules": 500, "plane": True}, marks=pytest.mark.nightly),
     ],
 )

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from atmosbox.page import Box, stage
-from atmosbox.page.page_panel import declared, panel_record
-from atmosbox.scene.panels import Line, Panel
 from atmosbox.theory.constants import DRY_AIR, WATER
 
 NANO = Box(length=(2e-8, 2e-8, 2e-8))
@@ -53,10 +51,3 @@ def test_a_pool_is_a_layer_and_a_mist_is_clumps(floor, drops):
     rainy = told.frame(0, 0.0, NANO.length, place, speed, liquid=10, rained=2)
     assert len(wet) == len(still) + 16 * drops
     assert len(rainy) == len(wet) + 16
-
-
-def test_a_misfit_in_degrees_is_read_in_kelvins():
-    line = Line("air_temperature", "air_pressure", "air", minus="air_temperature_theory")
-    told = panel_record(Panel("profile", "Misfit", (line,), x_unit="degC", y_unit="hPa"), declared)
-    assert told["x"]["unit"] == "K"
-    assert told["lines"][0]["minus"] == {"name": "air_temperature_theory", "factor": 1.0, "offset": -273.15}

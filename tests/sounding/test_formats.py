@@ -153,13 +153,6 @@ def test_a_sounding_is_read_with_its_missing_values(written, lines):
     assert sounding.remarks[0] == "1 level without pressure or temperature left out."
 
 
-def test_of_a_file_of_years_the_first_sounding_is_taken(written, lines):
-    other = [header(1, hour="12"), row(2, 1, 96000, 345, 100, 50)]
-    sounding = read(written(lines + other))
-    assert len(sounding) == 8
-    assert sounding.remarks[0] == "The first of 2 soundings in the file taken."
-
-
 def test_a_file_that_is_cut_off_is_refused_in_igra(written, lines):
     for cut in [1, 3, 8]:
         with pytest.raises(SoundingError, match=f"the header announces 9 levels, and {9 - cut} are there"):

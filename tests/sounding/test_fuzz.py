@@ -14,43 +14,18 @@ numbers = st.one_of(
     st.floats(-100.0, 1100.0).map(lambda x: f"{x:.1f}"),
     st.sampled_from(["-9999.00", "", "1e999", "nan", "1,5", "999.9", "M", "0", "-0", "1000", "850.0", "298", "25"]),
 )
-names = st.sampled_from(
-    [
-        "p",
-        "pressure [hPa]",
-        "T [degC]",
-        "T_K",
-        "Td",
-        "Td (K)",
-        "dewpoint [degC]",
-        "z [m]",
-        "HGHT",
-        "TEMP",
-        "RH",
-        "#",
-        "",
-    ]
-)
+names = st.sampled_from([
+    "p", "pressure [hPa]", "T [degC]", "T_K", "Td", "Td (K)", "dewpoint [degC]", "z [m]", "HGHT", "TEMP", "RH", "#",
+    "",
+])  # fmt: skip
 units = st.sampled_from(["hPa", "degC", "K", "m", "Pa", "degF", "blorp", "m**-99", "°C", ""])
 separators = st.sampled_from([",", ";", "\t", " ", ", ", "   "])
 rows = st.builds(lambda cells, separator: separator.join(cells), st.lists(st.one_of(numbers, units, names)), separators)
-marks = st.sampled_from(
-    [
-        "%TITLE%",
-        "%RAW%",
-        "%END%",
-        "<PRE>",
-        "</PRE>",
-        "-" * 30,
-        "   PRES   HGHT   TEMP   DWPT",
-        "    hPa     m      C      C ",
-        " 1000.0    100   20.0   10.0",
-        "  900.0   1000   15.0    5.0",
-        "pressure [hPa],temperature [degC],dewpoint [degC]",
-        "1000, 25, 17",
-        "   LEVEL  HGHT TEMP DWPT",
-    ]
-)
+marks = st.sampled_from([
+    "%TITLE%", "%RAW%", "%END%", "<PRE>", "</PRE>", "-" * 30, "   PRES   HGHT   TEMP   DWPT",
+    "    hPa     m      C      C ", " 1000.0    100   20.0   10.0", "  900.0   1000   15.0    5.0",
+    "pressure [hPa],temperature [degC],dewpoint [degC]", "1000, 25, 17", "   LEVEL  HGHT TEMP DWPT",
+])  # fmt: skip
 texts = st.lists(st.one_of(marks, rows, st.text(max_size=30)), max_size=25).map("\n".join)
 
 pressures = st.lists(st.floats(10.0, 1050.0).map(lambda x: round(x, 1)), min_size=3, max_size=15)

@@ -52,15 +52,11 @@ def test_a_gap_is_refused_in_the_lower_and_middle_troposphere_only():
 
 def test_a_wrong_unit_is_told_by_what_would_be_right():
     cases = [
-        ("temperature", [25.0, 10.0], "K", "degC"),
-        ("temperature", [298.0, 283.0], "degC", "K"),
-        ("temperature", [95.0, 50.0], "degC", "degF"),
-        ("dewpoint", [17.0, 5.0], "K", "degC"),
-        ("pressure", [1000.0, 900.0], "Pa", "hPa"),
-        ("pressure", [101325.0, 9e4], "hPa", "Pa"),
-        ("pressure", [29.9, 27.0], "hPa", "inHg"),
-        ("pressure", [101.3, 90.0], "hPa", "kPa"),
-    ]
+        ("temperature", [25.0, 10.0], "K", "degC"), ("temperature", [298.0, 283.0], "degC", "K"),
+        ("temperature", [95.0, 50.0], "degC", "degF"), ("dewpoint", [17.0, 5.0], "K", "degC"),
+        ("pressure", [1000.0, 900.0], "Pa", "hPa"), ("pressure", [101325.0, 9e4], "hPa", "Pa"),
+        ("pressure", [29.9, 27.0], "hPa", "inHg"), ("pressure", [101.3, 90.0], "hPa", "kPa"),
+    ]  # fmt: skip
     for quantity, values, unit, looks in cases:
         with pytest.raises(SoundingError, match=f'looks like {looks}: name its unit, as in "{quantity} .{looks}."'):
             check_plausible(quantity, np.array(values), unit, place)
@@ -75,14 +71,11 @@ def test_every_name_of_a_quantity_is_found_and_is_of_no_other():
 
 def test_the_best_name_with_a_fitting_unit_is_chosen():
     cases = [
-        (["T_K"], {"temperature": (0, "K")}),
-        (["t", "T"], {"temperature": (1, None)}),
-        (["t [s]", "temp [K]"], {"temperature": (1, "K")}),
-        (["level", "pressure"], {"pressure": (1, None)}),
-        (["level [1]", "lev [hPa]"], {"pressure": (1, "hPa")}),
-        (["dew point (°C)"], {"dewpoint": (0, "°C")}),
+        (["T_K"], {"temperature": (0, "K")}), (["t", "T"], {"temperature": (1, None)}),
+        (["t [s]", "temp [K]"], {"temperature": (1, "K")}), (["level", "pressure"], {"pressure": (1, None)}),
+        (["level [1]", "lev [hPa]"], {"pressure": (1, "hPa")}), (["dew point (°C)"], {"dewpoint": (0, "°C")}),
         (["T_virtual", "p_sea"], {}),
-    ]
+    ]  # fmt: skip
     for header, found in cases:
         assert stated_columns(header, "here") == found
 
