@@ -14,7 +14,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from atmosbox import scenarios
+from atmosbox import __version__, scenarios
 from atmosbox.errors import FileError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
@@ -298,3 +298,25 @@ def test_a_run_whose_instruments_keep_what_no_file_can_hold_says_so_and_saves_it
         runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
     assert read(checkpoint.part).sizes["elapsed_time"] > 0
     assert "holds no state" in refused("run", "--resume", checkpoint.part)
+
+
+@pytest.mark.parametrize(
+    "turns",
+    [
+        "scene=temperature&molecules=60&duration=1&seed=1&turns=5:temperature:300,40:temperature:start,80:temperature:60",
+        pytest.param(
+            "scene=lifting-dry&molecules=60&ascent=40&seed=1&turns=5:altitude:3,40:altitude:1.5,50:altitude:start",
+            marks=pytest.mark.nightly,
+        ),
+    ],
+)
+def test_a_replayed_run_that_was_stopped_turns_the_other_knobs_when_it_goes_on(turns, tmp_path, monkeypatch):
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    prepared = runner.replayed(f"#atmosbox={__version__}&{turns}&frames=100&end")
+    runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "whole.nc"), command="a test")
+    checkpoint = Checkpoint(tmp_path / "stopped.nc", every_seconds=0.0)
+    with pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=checkpoint, command="a test", progress=stopping([0.455]))
+    found = restart.read_state(checkpoint.part)
+    runner.execute(runner.prepared_again(found), checkpoint=checkpoint, restart=found)
+    assert content(tmp_path / "stopped.nc") == content(tmp_path / "whole.nc")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import signal
 import threading
 import time
@@ -15,7 +14,6 @@ import numpy as np
 
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Instrument, Molecules, Readings
-from atmosbox.scene.panels import from_json, to_json, without_headlines
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared, keeps_molecules
 from atmosbox.simulation.verification import with_bias
@@ -160,7 +158,7 @@ class Recording:
         coords = {name: readings.pop(name) for name in names if name in readings}
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
-        attributes = self.attributes | {"atmosbox_status": status} | (self._of_turns() if turns else {})
+        attributes = self.attributes | {"atmosbox_status": status}
         measured = dataset(readings, coords, attributes, time_unit=setup.time_unit, own=own)
         if self.frames < 2:
             return measured, ()
@@ -180,16 +178,3 @@ class Recording:
             if status == "complete" and self.prepared.replay is None:
                 raise
             return measured, ()  # too short for its theory, but worth keeping
-
-    def _of_turns(self) -> dict[str, Any]:
-        """Return the attributes of a run in which knobs were turned: the turns, and panels without headlines."""
-        replay, found = self.prepared.replay, dict(self.attributes)
-        if replay is None:
-            return {}
-        told = replay.about(self.setup, self.frames)
-        panels = map(without_headlines, from_json(found["atmosbox_panels"])) if "atmosbox_panels" in found else ()
-        return {
-            "atmosbox_turns": json.dumps(told["turns"]),
-            "atmosbox_panels": to_json(panel for panel in panels if panel is not None),
-            "comment": f"{told['words']} {found.get('comment', '')}".strip(),
-        }

@@ -12,6 +12,7 @@ if it went back to how it was before its first turn. ``frames`` is how far the r
 from __future__ import annotations
 
 import itertools
+import json
 import os
 import re
 from dataclasses import dataclass, replace
@@ -20,6 +21,7 @@ from urllib.parse import quote, unquote
 
 from atmosbox import scenarios
 from atmosbox.errors import Command, Option, SettingError, shown
+from atmosbox.scene.panels import from_json, to_json, without_headlines
 from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.version import __version__
 
@@ -33,6 +35,7 @@ __all__ = ["Replay", "Turn", "check_nothing_changes", "link_start", "read_link",
 _LONGEST = 200_000  # characters
 _MOST_TURNS = 5_000
 _MOST_FRAMES = 1_000_000
+_SAID = 20  # turns that the comment of a file names
 _LINK = re.compile(
     r"atmosbox=(?P<version>[\w.+-]{1,30})&scene=(?P<scene>[\w.%~-]{1,300})(?P<settings>(?:&\w+=[\w.%~-]*)*)"
     r"&seed=(?P<seed>[0-9]{1,16})(?:&turns=(?P<turns>[\w:,.+-]+))?&frames=(?P<frames>[0-9]{1,7})&end",
@@ -98,25 +101,33 @@ class Replay:
                 allowed = f"{knob.low:g} to {knob.high:g} {knob.unit}".strip()
                 _refuse(self.link, f"turns {turn.name} to {turn.value:g}, outside its range of {allowed}")
 
-    def about(self, setup: Setup, frames: int) -> dict[str, Any]:
-        """Return the turns within a number of frames for the attributes of a file: numbers, and a sentence."""
-        knobs = {knob.name: knob for knob in setup.knobs}
+    def attributes(self, setup: Setup, others: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the attributes of a file that say which knobs are turned; its panels show no headlines.
+
+        ``others`` are the other attributes of the file.
+        """
+        knobs, frames = {knob.name: knob for knob in setup.knobs}, self.length(setup)
         each = setup.frame * setup.scale.time / {"s": 1.0, "ns": 1e-9, "ps": 1e-12}[setup.time_unit]
         told = [
             {"frame": t.frame, "elapsed_time": t.frame * each, "time_unit": setup.time_unit, "name": t.name,
              "value": t.value, "unit": knobs[t.name].unit}
             for t in self.turns if t.frame < frames
         ]  # fmt: skip
+        if not told:
+            return {}
         words = [
             f"at {t['elapsed_time']:.6g} {t['time_unit']} {t['name']} "
             + ("as at the start" if t["value"] is None else f"= {t['value']:g} {t['unit']}".strip())
             for t in told[:_SAID]
         ]
         more = [f"and {len(told) - _SAID} more, in atmosbox_turns"] if len(told) > _SAID else []
-        return {"turns": told, "words": f"Knobs turned: {'; '.join([*words, *more])}. Averages begin after the last."}
-
-
-_SAID = 20  # turns that the sentence names
+        panels = map(without_headlines, from_json(others["atmosbox_panels"]))
+        return {
+            "atmosbox_turns": json.dumps(told),
+            "atmosbox_panels": to_json(panel for panel in panels if panel is not None),
+            "comment": f"Knobs turned: {'; '.join([*words, *more])}. Averages begin after the last. "
+            + str(others.get("comment", "")),
+        }
 
 
 def link_start(prepared: Prepared) -> str:

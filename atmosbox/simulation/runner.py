@@ -222,7 +222,7 @@ def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart
     if restart is not None:
         return {name: value for name, value in restart.attributes.items() if name != "atmosbox_headlines"}
     panels = prepared.module.panels
-    return global_attributes(
+    made = global_attributes(
         prepared.parameters,
         title=getattr(prepared.module, "title", prepared.scene),
         command=command or f"atmosbox run {prepared.scene}",
@@ -231,6 +231,7 @@ def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart
         panels=to_json(panels(prepared.settings) if callable(panels) else panels),
         status="partial",
     )
+    return made if prepared.replay is None else made | prepared.replay.attributes(setup, made)
 
 
 def run(

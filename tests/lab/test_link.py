@@ -224,7 +224,7 @@ def test_a_page_opens_the_links_of_its_starts_and_refuses_others_in_a_sentence(l
         ("=", "=9.", f"This link is of atmosbox 9.{__version__}"),
         ("elastic-collisions", "mountains", "This link is for the scene mountains: open it in the page that"),
         ("seed=3", "seed=99", "This page has no box with the settings of the link: type atmosbox run --replay"),
-        ("&frames", "&turns=0:heat:3&frames", "heat = 3 cannot be turned in frame 0"),
+        ("&frames", "&turns=0:constructor:3&frames", "constructor = 3 cannot be turned in frame 0"),
     ):  # fmt: skip
         shown.page.goto(shown.page.url.partition("#")[0] + link.replace(part, wrong, 1))
         assert sentence in shown.note()

@@ -21,6 +21,7 @@ const WHY = { 2: "events pile up without end", 3: "more molecules have come toge
 const say = (message) => postMessage(message);
 // A number rounded to 32 binary digits: see atmosbox/scene/rounding.py.
 const rounded = (x) => x * (2 ** 21 + 1) - (x * (2 ** 21 + 1) - x);
+const decoded = (text) => { try { return decodeURIComponent(text); } catch { return text; } };
 const refuse = (text) => say({ type: "note", level: "error", text });
 
 class Box {
@@ -443,7 +444,7 @@ class Box {
     else if (mine[1] !== `scene=${scene}`) refuse(`This link is for the scene ${scene}: open it in the page that atmosbox lab ${scene} writes.`);
     else if (await this.found(own, Number(seed), settings)) {
       this.again();
-      const wrong = coming.find(([, frame, name, value], place) => !(name in this.plan.knobs) || frame - (coming[place - 1]?.[1] ?? 0) < 0
+      const wrong = coming.find(([, frame, name, value], place) => !Object.hasOwn(this.plan.knobs, name) || frame - (coming[place - 1]?.[1] ?? 0) < 0
         || !(value === "start" || (value >= this.control(name).low && value <= this.control(name).high)));
       if (wrong) refuse(`${wrong[2]} = ${wrong[3]} cannot be turned in frame ${wrong[1]}: copy the link again, as a whole.`);
       else this.coming = coming.map(([, frame, name, value]) => ({ frame: Number(frame), name, value: value === "start" ? null : Number(value) }));
@@ -455,7 +456,7 @@ class Box {
     const fits = ({ link, ...plan }) => link === own && (plan.seeded || plan.seed === seed);
     let start = this.start, machine = fits(this.plan) ? this.machine : null;
     if (!machine && this.served) {
-      start = { ...Object.fromEntries(settings.split("&").slice(1).map((each) => each.split("=").map(decodeURIComponent))), seed };
+      start = { ...Object.fromEntries(settings.split("&").slice(1).map((each) => each.split("=").map(decoded))), seed };
       machine = await this.planned(start);
       if (!machine) return false;
     } else if (!machine) {
