@@ -108,6 +108,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
+            "settle": 0.0 if setup.ends else setup.settle * setup.frame * setup.scale.time / _SECONDS[setup.time_unit],
             "lesson": _lesson(prepared, readings, setup.time_unit),
         },
         "base": BASE,

@@ -35,7 +35,9 @@ MODULES = (
     "curves.js",
     "skewt.js",
     "ink.js",
+    "notes.js",
     "graph.js",
+    "means.js",
     "graphs.js",
     "caption.js",
     "legend.js",
@@ -47,7 +49,7 @@ MODULES = (
 
 _ENTRIES = {
     "view": ("view.js",),
-    "lab": ("controls.js", "notes.js", "player.js", "gauges.js", "lesson.js", "engine.js", "link.js", "lab.js"),
+    "lab": ("controls.js", "player.js", "gauges.js", "lesson.js", "engine.js", "link.js", "lab.js"),
 }
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 

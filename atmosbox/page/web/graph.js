@@ -5,6 +5,7 @@ import { curveColour, curveDash, look } from "./colour.js";
 import { logTicks, powerText, scaled, tickTexts, ticks } from "./figure.js";
 import { drawCurve, markerSvg } from "./ink.js";
 import { drawSkewt, slanted } from "./skewt.js";
+import { explained } from "./notes.js";
 import { numbers, phrase, word } from "./words.js";
 
 const ORDER = { reference: 0, environment: 1, data: 2, theory: 3 };
@@ -32,7 +33,9 @@ export class Graph {
   }
 
   say(sentences) {
-    const line = this.part(".sentences");
+    const line = this.part(".sentences"), said = sentences.join();
+    if (said === this.said) return;
+    this.said = said;
     line.replaceChildren();
     line.title = sentences.map((sentence) => numbers(phrase(sentence))).join("\n");
     for (const sentence of sentences) {
@@ -171,7 +174,9 @@ export class Graph {
 
   // The legend. If there are two runs, the colour tells the run, and the dashes tell the curve.
   #key() {
-    const key = this.part(".key");
+    const key = this.part(".key"), told = JSON.stringify(this.curves.map((curve) => [curve.label, this.colour(curve)]));
+    if (told === this.keyed) return;
+    this.keyed = told;
     key.replaceChildren();
     const named = new Set();
     for (const curve of this.curves) {
@@ -183,7 +188,7 @@ export class Graph {
       const wide = curve.role === "reference" ? 5 : 2.2;
       item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
         + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
-      item.append(phrase(curve.label));
+      item.append(explained(curve.label));
       key.append(item);
     }
   }

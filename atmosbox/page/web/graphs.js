@@ -2,6 +2,7 @@
 
 import { curvesOf } from "./curves.js";
 import { Graph } from "./graph.js";
+import { meansOf } from "./means.js";
 import { highestShare, speedCurves, speedPanel } from "./speeds.js";
 
 const PATIENCE = 90; // least time between two counts of the speeds [ms]
@@ -71,6 +72,11 @@ export class Graphs {
     const peak = curves.filter(({ role }) => role === "theory").reduce((most, { y }) => Math.max(most, ...y), 0);
     if (!this.highest) this.highest = Math.max(...this.runs.map(({ stage, film }) => highestShare(film.frames, stage)));
     else if (!this.whole && peak && (peak > 0.9 * this.highest || peak < 0.4 * this.highest)) this.highest = 1.5 * peak;
+  }
+
+  // Write the means of what was measured since a moment beside those of theory.
+  compare(from) {
+    for (const { graph } of this.panels) if (graph.overTime) graph.say(meansOf(graph.curves, from, graph.panel.y.unit));
   }
 
   repaint() {

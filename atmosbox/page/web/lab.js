@@ -58,7 +58,10 @@ class Lab {
     else if (told.type === "wind") this.stage?.blow(told);
     else if (told.type === "state") this.state(told);
     else if (told.type === "link") this.link.show(told.link);
-    else if (told.type === "controls") this.controls.show(told.controls);
+    else if (told.type === "controls") {
+      this.controls.show(told.controls);
+      this.since = this.numbers?.get("elapsed_time")?.at(-1) ?? 0;
+    }
     else if (told.type === "note") {
       note(find("notes"), told);
       if (told.level === "error") this.controls.restore();
@@ -67,7 +70,9 @@ class Lab {
   }
 
   // A new box begins: remove all that was shown of the previous one.
-  open({ stage: record, controls, state, lesson }) {
+  open({ stage: record, controls, state, lesson, settle }) {
+    if (!this.numbers || state.time === 0) this.since = 0;
+    this.settle = settle;
     this.stage?.leave();
     find("boxes").replaceChildren();
     const frame = Object.assign(document.createElement("div"), { className: "box" });
@@ -105,7 +110,7 @@ class Lab {
   state(told) {
     this.player.show(told);
     this.lesson.show(told);
-    if (told.gauges) this.gauges.show(told.gauges);
+    if (told.gauges) this.gauges.show(told.gauges, told.molecules);
     if (told.walls) {
       this.walls = told.walls;
       this.stage?.warm(told.walls);
@@ -159,6 +164,7 @@ class Lab {
       find("status").textContent = this.sheet.story();
       this.caption({ walls: this.walls, length: this.film.frames.at(-1).length });
     }
+    if (this.settle) this.graphs.compare({ since: this.since + this.settle, changed: this.since > 0 });
     this.lesson.judge(this.numbers);
   }
 }

@@ -6,7 +6,7 @@
 const PERIOD = 1000 / 60, SHARE = 0.8; // ms between two pictures, and the share of that time for the engine
 const MEASURE = 250, STATE = 500; // ms between two messages with measurements, and between two with the state of the box
 const EVENTS = 4000; // collisions and other events between two readings of the clock
-const FRAMES = 20; // over which a gauge takes the mean
+const FRAMES = 40; // of which a gauge knows the scatter
 const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
 const DRAG = 1500; // ms within which movements of a slider are one change
 const STEP = 0.04; // real time that one step shows [s]
@@ -90,15 +90,17 @@ class Box {
     return WALLS.map((wall, place) => brief(found[`wall_temperature[${wall}]`] ?? NaN) ?? this.told.stage.box.wall_temperature[place]);
   }
 
-  // The readings of the gauges: during an ascent the latest measurement, otherwise the mean of some frames, because few
-  // molecules scatter.
+  // The readings of the gauges: those of the latest frame, and by how much they scatter from frame to frame. That is the
+  // scatter that theory expects or, without one, the standard deviation of the latest frames; of an ascent there is none.
   gauges() {
-    const rows = this.trace.rows.slice(this.plan.ends ? -1 : -FRAMES);
-    if (!rows.length) return [];
+    const rows = this.trace.rows.slice(-FRAMES), last = rows.at(-1) ?? {};
     return this.plan.gauges.flatMap(({ name, variable, unit, factor, offset, few }) => {
-      const seen = rows.map((row) => (few && !(row[few[0]] >= few[1] * row[variable]) ? NaN : row[variable])).filter(Number.isFinite);
+      const seen = rows.filter((row) => !few || row[few[0]] >= few[1] * row[variable]).map((row) => row[variable]).filter(Number.isFinite);
+      if (!seen.length) return [];
       const mean = seen.reduce((sum, value) => sum + value, 0) / seen.length;
-      return seen.length ? [{ name, unit, value: Number((mean * factor + offset).toPrecision(4)) }] : [];
+      const steady = !this.plan.ends && this.frame - this.since >= FRAMES + this.plan.settle && seen.length === FRAMES;
+      const measured = steady ? Math.sqrt(seen.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (FRAMES - 1)) : NaN;
+      return [{ name, unit, value: Number((seen.at(-1) * factor + offset).toPrecision(4)), spread: brief((last[`${variable}_noise`] ?? measured) * factor) }];
     });
   }
 

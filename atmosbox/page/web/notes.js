@@ -1,6 +1,6 @@
 // Messages for the reader: a sentence that disappears after a while.
 
-import { phrase, word } from "./words.js";
+import { gloss, phrase, word } from "./words.js";
 
 const SIGNS = { info: "i", warning: "!", error: "×" };
 const WORDS = { warning: "note", error: "refused" };
@@ -17,4 +17,13 @@ export function note(parent, { level = "info", text }) {
   parent.append(card);
   setTimeout(() => card.remove(), READING);
   while (parent.children.length > 4) parent.firstElementChild.remove();
+}
+
+// A term as it is written, which explains itself when it is clicked; the plain text if it needs no explanation.
+export function explained(term) {
+  const meaning = gloss(term);
+  if (!meaning) return phrase(term);
+  const button = Object.assign(document.createElement("button"), { type: "button", className: "term", textContent: phrase(term) });
+  button.onclick = () => note(document.getElementById("notes"), { text: `${phrase(term)}: ${meaning}` });
+  return button;
 }

@@ -55,6 +55,9 @@ export function phrase(text) {
   return text ?? "";
 }
 
+// The explanation of a term in one line; undefined for a word that everybody knows.
+export const gloss = (text) => table.gloss?.[text] ?? english.gloss?.[text];
+
 // A text, sentence by sentence; if not all of them are translated, only its first sentence.
 export function story(text) {
   const parts = (text ?? "").split(/(?<=[.?]) /), said = parts.map(phrase);
