@@ -468,9 +468,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     scale = 1e-3 * BOLTZMANN * settings.si.temperature / (DRY_AIR.molecule_mass * settings.si.gravity)
     held = -math.expm1(-settings.height / scale)  # the share of an endless column that is below the ceiling
     below = ((share, -scale * math.log1p(-share * held)) for share in (0.5, 0.75, 0.9))
-    guides = tuple(
-        ("y", height, f"{100.0 * share:.0f} % of the air is below {height:.1f} km") for share, height in below
-    )
+    guides = tuple(("y", height, f"{100.0 * share:.0f} % below {height:.1f} km") for share, height in below)
     return (
         against_height(
             "The air thins with height", "layer_pressure", "barometric law, finite molecules", (),

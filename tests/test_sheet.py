@@ -334,7 +334,7 @@ def test_a_sheet_for_pages_names_pages_and_graphs_and_nothing_that_is_typed(scen
     panels = made.runs[0].prepared.module.panels
     titles = {panel.title for panel in (panels(made.runs[0].prepared.settings) if callable(panels) else panels)}
     rows = re.findall(r"^\| ([^|]*) \| ([^|]+) \| A \|", made.text, re.MULTILINE)
-    assert len(rows) >= 2
+    assert rows
     assert {graph for graph, _ in rows} <= titles
 
 

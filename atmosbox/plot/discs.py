@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -229,22 +229,13 @@ def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
     >>> put_discs(Figure().add_subplot(), one, THEMES["notes"]).get_offsets().tolist()
     [[1.0, 1.0]]
     """
-    norm = colour_scale(found.speed)
     # a rim must not hide the colour of a small disc
     rim = min(0.8, 15.0 * float(np.median(found.diameter) / np.ptp(found.box)))
     drawn = EllipseCollection(
-        found.diameter,
-        found.diameter,
-        np.zeros_like(found.diameter),
-        units="xy",
-        offsets=found.place[-1],
-        offset_transform=axes.transData,
-        cmap=FIELD_COLOURS,
-        norm=norm,
-        edgecolors=DARK,
-        linewidths=theme.line * np.where(found.heavy, rim, rim / 3.0),
-        zorder=3.0,
-    )
+        found.diameter, found.diameter, np.zeros_like(found.diameter), units="xy", offsets=found.place[-1],
+        offset_transform=axes.transData, cmap=FIELD_COLOURS, norm=colour_scale(found.speed), edgecolors=DARK,
+        linewidths=theme.line * np.where(found.heavy, rim, rim / 3.0), zorder=3.0,
+    )  # fmt: skip
     drawn.set_array(found.speed[-1])
     axes.add_collection(drawn)
 
@@ -302,13 +293,7 @@ def _entries(heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme) 
         return []
     ratio = float(np.median(mass[heavy]) / np.median(mass[~heavy]))
 
-    def disc(scale: float, width: float) -> Line2D:
-        return Line2D(
-            [], [], linestyle="none", marker="o", markersize=theme.marker * scale, markerfacecolor="white",
-            markeredgecolor=DARK, markeredgewidth=width,
-        )  # fmt: skip
-
-    return [
-        ((disc(1.4, theme.line / 3),), "light half"),
-        ((disc(2.2, theme.line),), f"heavy half: {_ratio(ratio)} × the mass"),
-    ]
+    look: dict[str, Any] = {"ls": "none", "marker": "o", "mfc": "white", "mec": DARK}
+    light = Line2D([], [], ms=1.4 * theme.marker, mew=theme.line / 3, **look)
+    weighty = Line2D([], [], ms=2.2 * theme.marker, mew=theme.line, **look)
+    return [((light,), "light half"), ((weighty,), f"heavy half: {_ratio(ratio)} × the mass")]

@@ -274,7 +274,7 @@ def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
             continue
         axes.axhline(value, **thin)
         near = curves[0][np.nanargmin(np.abs(curves[0][:, 1] - value))] if curves else (low, value)
-        right = axes.transLimits.transform(axes.transScale.transform(near))[0] < 0.6
+        right = axes.transLimits.transform(axes.transScale.transform(near))[0] < 0.7
         place, side = ((1.0, -gap), "right") if right else ((0.0, gap), "left")
         axes.annotate(words, (place[0], value), (place[1], gap), xycoords=("axes fraction", "data"), ha=side, **look)
     if panel.start and curves:

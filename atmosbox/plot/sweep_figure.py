@@ -201,8 +201,8 @@ def _panels(
         label, unit = (str(dataset[name].attrs.get(key, "")) for key in ("long_name", "display_units"))
         label = label or name
         title = label[:1].upper() + label[1:]
-        scales = ["log" if log else "linear" for log in (across.geometric, _spans(flat, lines))]
-        made.append(Panel("line", title, lines, across.label, label, across.shown, unit, *scales))
+        x_scale, y_scale = ("log" if log else "linear" for log in (across.geometric, _spans(flat, lines)))
+        made.append(Panel("line", title, lines, across.label, label, across.shown, unit, x_scale, y_scale))
     return flat, tuple(made)
 
 
