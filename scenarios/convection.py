@@ -97,6 +97,9 @@ ladder = (
 )
 """Runs worth comparing: more molecules make a higher box, in which air turns over more easily."""
 
+not_measured = "in which theory knows only the weight of the air: fewer molecules make another box, no faster run of it"
+"""Why there is no measured accuracy."""
+
 
 class Settings(SceneSettings):
     """What a user may set."""
