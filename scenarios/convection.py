@@ -298,7 +298,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     rest = box.rest()
     path = 1.0 if box.thin else float(box.gas.free_path(box.density))
     steep = (settings.si.floor_temperature - settings.si.ceiling_temperature) / settings.height
-    lapse = 1000.0 * float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * _lapse_unit(scale)
+    lapse = float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * scale.temperature / scale.length
     fastest = float(np.max(box.growth((box.floor, box.ceiling), box.gravity)))
     # the time in which a box of this height conducts a difference away
     spread = float(box.gas.conductivity(box.density, 1.0)) / (box.density * (0.5 * box.gas.freedom + 1.0))
@@ -330,7 +330,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "real molecules per simulated one": f"{scale.weight:.2g}",
             "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
             f"temperature falls by {steep:.3g} K/km if heat is conducted",
-            "adiabat": f"{lapse:.3g} K/km at the mean density",
+            "adiabat": f"{1000.0 * lapse:.3g} K/km at the mean density",
             "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
             "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
             "Knudsen number": f"{path / box.height:.2g}, mean free path in heights",
@@ -345,11 +345,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
 
 
-def _lapse_unit(scale: Scale) -> float:
-    """Return the unit of a lapse rate [K/m]."""
-    return scale.temperature / scale.length
-
-
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return the air at rest, the adiabat through the middle of the height, and how rolls begin to grow."""
     box = Box(settings, used(dataset))
@@ -360,7 +355,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     found = {"layer_temperature_conduction": np.interp(height, rest.height * metre, rest.temperature) * kelvin}
     if "layer_temperature" in dataset:
         density = dataset.number_density.values / box.scale.number_density
-        steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * _lapse_unit(box.scale)
+        steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * kelvin / metre
         fallen = np.concatenate([[0.0], np.cumsum(0.5 * (steps[1:] + steps[:-1]) * np.diff(height))])
         middle = 0.5 * settings.si.height
         warm = np.interp(middle, height, dataset.layer_temperature.values)
@@ -392,12 +387,6 @@ def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
     return last if last >= 6 and np.nanmax(speed) > least else None
 
 
-def _at_rest(box: Box, kT: tuple[float, float], pull: float) -> bool:
-    """Return whether theory says that the air stays at rest."""
-    rates = box.growth(kT, pull)
-    return bool(np.isfinite(rates).all() and np.max(rates) < 0.0)
-
-
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return lapse rate, wind, heat and weight of the air, what rose from the floor, and the growth of rolls."""
     box = Box(settings, used(dataset))
@@ -405,12 +394,14 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if late.sizes["elapsed_time"] < LEAST:
         return ()
     kT, pull = box.now(dataset)
-    still = _at_rest(box, kT, pull)
+    rest = box.rest(kT, pull)
+    # where air is unstable and only too viscous to turn over, buoyancy makes the noise of rolls stronger
+    still = box.thin and not box.beside and law.rayleigh_number(rest) <= 0.0
     found = [_weight(late, dataset, box)]
     if box.beside:
         found += _breeze(late)
     else:
-        found += _core(late, box, kT, pull, still=still)
+        found += _core(late, box, rest, still=still)
     wind = overlapping_average(np.sign(late.wind_speed.values) * late.wind_speed.values**2)
     if still:
         found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
@@ -424,7 +415,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found.append(Headline("share_from_the_floor", share, error, None, 0.0, CHANCE_ALONE, "1", "percent", label))
     last = _linear(dataset, settings)
     if last is not None and not still and box.thin:
-        found += _grown(dataset, box, kT, pull, last, settings.molecules)
+        found += _grown(dataset, box, box.growth(kT, pull), last, settings.molecules)
     return tuple(found)
 
 
@@ -445,7 +436,7 @@ def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
     )  # fmt: skip
 
 
-def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *, still: bool) -> tuple[Headline, ...]:
+def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> tuple[Headline, ...]:
     """Return the lapse rate of the core, and the Nusselt number, which is 1 in air at rest.
 
     The lapse rate of air at rest has no theory good enough: below the cold ceiling mean free paths are so long that
@@ -453,7 +444,6 @@ def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *,
     """
     steep = overlapping_average(late.core_lapse_rate.values)
     lapse = Headline.of_mean("mean_core_lapse_rate", "lapse rate of the core", steep, None, "K m-1", "K/km")
-    rest = box.rest(kT, pull)
     if not rest.heat:
         return (lapse,)
     heat = np.diff(late.heat_from_wall.values, axis=0) / np.diff(late.elapsed_time.values)[:, None]
@@ -480,9 +470,7 @@ def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     )  # fmt: skip
 
 
-def _grown(
-    dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, last: int, molecules: int
-) -> tuple[Headline, ...]:
+def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecules: int) -> tuple[Headline, ...]:
     """Return the growth rate of the strongest roll while it is weak, beside that of linear theory."""
     strongest = int(np.argmax(np.abs(dataset.roll_amplitude.values[last])))
     step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
@@ -492,7 +480,7 @@ def _grown(
     found = growth_per_step(weak, _noise(dataset, molecules), decay)
     if not math.isfinite(found.mean):
         return ()
-    rate = float(box.growth(kT, pull)[strongest]) / box.scale.time
+    rate = float(rates[strongest]) / box.scale.time
     rolls = Headline.of_mean(
         "growth_rate",
         f"growth of the roll with {int(dataset.mode.values[strongest])} half waves",
@@ -535,7 +523,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     )  # fmt: skip
     released = Panel(
         "line", "What is released at the floor",
-        (Line("elapsed_time", "tracer_share_aloft", "in the upper half"),),
-        x_label="time", x_unit="min", y_label="share aloft", y_unit="percent", headlines=("share_from_the_floor",),
+        (Line("elapsed_time", "tracer_share_aloft", "molecules from the floor"),),
+        x_label="time", x_unit="min", y_label="share above half height", y_unit="percent",
+        headlines=("share_from_the_floor",),
     )  # fmt: skip
     return profile, rolls, released
