@@ -107,6 +107,9 @@ ladder = (
 )
 """Runs worth comparing: more molecules make a higher box, in which air turns over more easily."""
 
+not_measured = "in which theory knows only the weight of the air: fewer molecules make another box, no faster run of it"
+"""Why there is no measured accuracy."""
+
 
 class Settings(SceneSettings):
     """What a user may set."""
@@ -303,7 +306,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     rest = box.rest()
     path = 1.0 if box.thin else float(box.gas.free_path(box.density))
     steep = (settings.si.floor_temperature - settings.si.ceiling_temperature) / settings.height
-    lapse = 1000.0 * float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * _lapse_unit(scale)
+    lapse = float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * scale.temperature / scale.length
     fastest = float(np.max(box.growth((box.floor, box.ceiling), box.gravity)))
     # the time in which a box of this height conducts a difference away
     spread = float(box.gas.conductivity(box.density, 1.0)) / (box.density * (0.5 * box.gas.freedom + 1.0))
@@ -335,7 +338,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "real molecules per simulated one": f"{scale.weight:.2g}",
             "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
             f"temperature falls by {steep:.3g} K/km if heat is conducted",
-            "adiabat": f"{lapse:.3g} K/km at the mean density",
+            "adiabat": f"{1000.0 * lapse:.3g} K/km at the mean density",
             "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
             "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
             "Knudsen number": f"{path / box.height:.2g}, mean free path in heights",
@@ -350,11 +353,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
 
 
-def _lapse_unit(scale: Scale) -> float:
-    """Return the unit of a lapse rate [K/m]."""
-    return scale.temperature / scale.length
-
-
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return the air at rest, the adiabat through the middle of the height, and how rolls begin to grow."""
     box = Box(settings, used(dataset))
@@ -365,7 +363,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     found = {"layer_temperature_conduction": np.interp(height, rest.height * metre, rest.temperature) * kelvin}
     if "layer_temperature" in dataset:
         density = dataset.number_density.values / box.scale.number_density
-        steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * _lapse_unit(box.scale)
+        steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * kelvin / metre
         fallen = np.concatenate([[0.0], np.cumsum(0.5 * (steps[1:] + steps[:-1]) * np.diff(height))])
         middle = 0.5 * settings.si.height
         warm = np.interp(middle, height, dataset.layer_temperature.values)
@@ -397,12 +395,6 @@ def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
     return last if last >= 6 and np.nanmax(speed) > least else None
 
 
-def _at_rest(box: Box, kT: tuple[float, float], pull: float) -> bool:
-    """Return whether theory says that the air stays at rest."""
-    rates = box.growth(kT, pull)
-    return bool(np.isfinite(rates).all() and np.max(rates) < 0.0)
-
-
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return lapse rate, wind, heat and weight of the air, what rose from the floor, and the growth of rolls."""
     box = Box(settings, used(dataset))
@@ -410,12 +402,14 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if late.sizes["elapsed_time"] < LEAST:
         return ()
     kT, pull = box.now(dataset)
-    still = _at_rest(box, kT, pull)
+    rest = box.rest(kT, pull)
+    # where air is unstable and only too viscous to turn over, buoyancy makes the noise of rolls stronger
+    still = box.thin and not box.beside and law.rayleigh_number(rest) <= 0.0
     found = [_weight(late, dataset, box)]
     if box.beside:
         found += _breeze(late)
     else:
-        found += _core(late, box, kT, pull, still=still)
+        found += _core(late, box, rest, still=still)
     wind = overlapping_average(np.sign(late.wind_speed.values) * late.wind_speed.values**2)
     if still:
         found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
@@ -429,7 +423,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found.append(Headline("share_from_the_floor", share, error, None, 0.0, CHANCE_ALONE, "1", "percent", label))
     last = _linear(dataset, settings)
     if last is not None and not still and box.thin:
-        found += _grown(dataset, box, kT, pull, last, settings.molecules)
+        found += _grown(dataset, box, box.growth(kT, pull), last, settings.molecules)
     return tuple(found)
 
 
@@ -450,7 +444,7 @@ def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
     )  # fmt: skip
 
 
-def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *, still: bool) -> tuple[Headline, ...]:
+def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> tuple[Headline, ...]:
     """Return the lapse rate of the core, and the Nusselt number, which is 1 in air at rest.
 
     The lapse rate of air at rest has no theory good enough: below the cold ceiling mean free paths are so long that
@@ -458,7 +452,6 @@ def _core(late: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, *,
     """
     steep = overlapping_average(late.core_lapse_rate.values)
     lapse = Headline.of_mean("mean_core_lapse_rate", "lapse rate of the core", steep, None, "K m-1", "K/km")
-    rest = box.rest(kT, pull)
     if not rest.heat:
         return (lapse,)
     heat = np.diff(late.heat_from_wall.values, axis=0) / np.diff(late.elapsed_time.values)[:, None]
@@ -485,9 +478,7 @@ def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     )  # fmt: skip
 
 
-def _grown(
-    dataset: "xr.Dataset", box: Box, kT: tuple[float, float], pull: float, last: int, molecules: int
-) -> tuple[Headline, ...]:
+def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecules: int) -> tuple[Headline, ...]:
     """Return the growth rate of the strongest roll while it is weak, beside that of linear theory."""
     strongest = int(np.argmax(np.abs(dataset.roll_amplitude.values[last])))
     step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
@@ -497,7 +488,7 @@ def _grown(
     found = growth_per_step(weak, _noise(dataset, molecules), decay)
     if not math.isfinite(found.mean):
         return ()
-    rate = float(box.growth(kT, pull)[strongest]) / box.scale.time
+    rate = float(rates[strongest]) / box.scale.time
     rolls = Headline.of_mean(
         "growth_rate",
         f"growth of the roll with {int(dataset.mode.values[strongest])} half waves",

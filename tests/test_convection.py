@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.optimize import brentq
 
 from atmosbox import plot, theory
@@ -122,6 +123,33 @@ def test_an_ideal_gas_under_more_weight_stays_at_rest_as_theory_says():
         "stays at rest"
         in dict(runner.card(runner.prepare("convection", {"case": "stable"})).facts)["onset by linear theory"]
     )
+
+
+def test_wind_and_heat_are_compared_with_air_at_rest_only_where_buoyancy_does_not_drive_it():
+    # at this gravity rolls decay only because the air is so viscous, and noise drives them more than in air at rest
+    settings = {"molecules": 2000, "width": 0.5, "gravity": 9.0, "duration": 50.0}
+    viscous = ran("dsmc", **settings)
+    card = runner.card(runner.prepare("convection", settings, engine="dsmc"))
+    assert "stays at rest" in dict(card.facts)["onset by linear theory"]
+    assert number(viscous, "nusselt_number").theory is None
+    assert all(each.name != "mean_square_wind" for each in viscous.headlines)
+
+
+@pytest.mark.validate
+def test_rolls_of_sixty_seeds_grow_as_linear_theory_says_within_their_errors():
+    """Of one processor it takes half an hour."""
+    runs = [ran("dsmc", molecules=100_000, duration=500.0, seed=seed) for seed in range(1, 61)]
+    grown = [each for outcome in runs for each in outcome.headlines if each.name == "growth_rate"]
+    assert len(grown) >= 55
+    apart = np.array([(each.value - each.theory) / each.standard_error for each in grown])
+    assert stats.chi2.ppf(0.0005, len(grown)) < np.sum(apart**2) < stats.chi2.ppf(0.9995, len(grown))
+    ratio = np.array([each.value / each.theory for each in grown])
+    assert -0.09 - 4.0 * stats.sem(ratio) < ratio.mean() - 1.0 < 4.0 * stats.sem(ratio)  # grown rolls are slower
+
+
+def test_an_accuracy_is_refused_with_its_reason():
+    with pytest.raises(AtmosboxError, match="theory knows only the weight of the air"):
+        runner.prepare("convection", {}, accuracy="sketch")
 
 
 def test_below_an_inversion_little_of_the_smoke_rises():

@@ -135,7 +135,8 @@ def prepare(
     if accuracy is not None:
         if engine is not None:
             raise SettingError("accuracy", accuracy, "picks the engine itself", f"leave it out, or the engine {engine}")
-        picked = accuracies.choose(name, accuracy, checked.changed())
+        why = getattr(module, "not_measured", "whose errors were not measured")
+        picked = accuracies.choose(name, accuracy, checked.changed(), why=why)
         given = {field_name(setting) for setting in settings}
         sets = {name: value for name, value in picked.sets.items() if name not in given}
         checked = module.Settings.from_user({**checked.as_dict(), **sets})

@@ -1,15 +1,26 @@
-"""Convection: wind, heat and lapse rate for several gravities and seeds, and growth of rolls beside theory."""
+"""Convection: wind, heat and lapse rate for several gravities and seeds; onset and growth of rolls beside theory."""
 
 import numpy as np
 from jobs.registry import Findings, job, rounded
 
+from atmosbox import theory
 from atmosbox.scene.headline import Headline
 from atmosbox.simulation import runner
 from atmosbox.text.table import measurement
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 GRAVITIES = (0.0, 5.0, 9.80665, 15.0, 20.0, 25.0, 30.0)
 SEEDS = range(1, 7)
-GROWN = range(1, 13)
+GROWN = range(1, 11)
+ACROSS = (10.0, 14.0, 16.0, 18.0, 21.0)
+"""Gravities on either side of the onset in the box of `onset` [m/s2]."""
+SOME = range(1, 11)
+STRONG = 6.0
+"""How many times as strong as its noise at rest a roll must be, so that the air counts as turned over."""
+SIZES = ((25_000, 2000.0), (50_000, 1500.0), (100_000, 1200.0))
+"""Numbers of spheres, and the time after which they turn over steadily [s]."""
+STEEPER = 16.36, 50_000
+"""Gravity of which the adiabat is .6 times as steep as the imposed gradient [m/s2], and the box looked at closely."""
 STILL = range(1, 9)
 HIGHER = range(1, 5)
 
@@ -44,7 +55,12 @@ def conducted(outcome: "runner.Outcome") -> float:
     return -1000.0 * float(np.polyfit(height[core], rest[core], 1)[0])
 
 
-SHOWN = ["wind [m/s]", "lapse rate of the core [K/km]", "heat, over that at rest", "from the floor aloft [%]"]
+SHOWN = [
+    "wind [m/s]",
+    "lapse rate of the core [K/km]",
+    "heat, over that at rest",
+    "from the floor to above half height [%]",
+]
 
 
 @job("convection-gravity")
@@ -80,7 +96,7 @@ def seeds(found: Findings) -> None:
 @job("convection-growth")
 def growth(found: Findings) -> None:
     """Let rolls grow in an ideal gas, and compare the strongest of each run with linear theory."""
-    rows, ratios = [], []
+    rows, ratios, apart = [], [], []
     for seed in GROWN:
         each, _ = measured("dsmc", molecules=100_000, duration=500.0, seed=seed)
         if "growth_rate" not in each:
@@ -90,9 +106,86 @@ def growth(found: Findings) -> None:
             found.failures.append(f"seed {seed}: rolls grow by {grown.value:.3g}, theory says {grown.theory:.3g}")
         rows.append([str(seed), grown.label.split()[-3], cell(each, "growth_rate"), rounded(grown.theory or 0.0, 3)])
         ratios.append(grown.value / (grown.theory or 1.0))
+        apart.append((grown.value - (grown.theory or 0.0)) / grown.standard_error)
     error = float(np.std(ratios, ddof=1)) / len(ratios) ** 0.5
     found.number("ratio", measurement(float(np.mean(ratios)), error))
+    found.number("scatter", rounded(float(np.mean(np.square(apart))) ** 0.5))
     found.table(["seed", "half waves of the roll", "growth [1/s]", "linear theory [1/s]"], rows)
+
+
+@job("convection-onset")
+def onset(found: Findings) -> None:
+    """Count how many boxes of an ideal gas turn over, for gravities on either side of the onset of linear theory."""
+    rows, shares = [], []
+    for gravity in ACROSS:
+        settings = {"molecules": 16_000, "width": 0.7, "duration": 800.0, "gravity": gravity}
+        outcomes = [measured("dsmc", seed=seed, **settings) for seed in SOME]
+        turned, heat = 0, np.array([each["nusselt_number"].value for each, _ in outcomes])
+        for _, outcome in outcomes:
+            late = outcome.dataset.isel(elapsed_time=slice(80, None))
+            noise = BOLTZMANN * float(late.air_temperature.mean()) / DRY_AIR.molecule_mass / 16_000
+            turned += bool((late.roll_amplitude.values**2).mean(axis=0).max() > STRONG**2 * noise)
+        module = runner.prepare("convection", settings, engine="dsmc")
+        box = module.module.Box(module.settings, module.engine)
+        rate = float(np.max(box.growth((box.floor, box.ceiling), box.gravity))) / box.scale.time
+        shares.append(turned)
+        error = float(np.std(heat, ddof=1)) / len(heat) ** 0.5
+        rows.append(
+            [
+                f"{gravity:.3g}",
+                f"{theory.rayleigh_number(box.rest()):.0f}",
+                f"{rounded(rate)}",
+                f"{turned} of {len(heat)}",
+                measurement(float(heat.mean()), error),
+            ]
+        )
+    if not (shares[0] > len(SOME) / 2 and shares[-1] == 0):
+        found.failures.append(f"air turns over where theory says that it rests, or the other way round: {shares}")
+    found.table(
+        ["gravity [m/s²]", "Rayleigh number", "growth by theory [1/s]", "turned over", "heat, over that at rest"], rows
+    )
+
+
+@job("convection-adiabat")
+def adiabat(found: Findings) -> None:
+    """Turn ideal gases over in boxes of three heights, and compare the lapse rates of their cores with the adiabat."""
+    rows = []
+    for gravity in (9.80665, STEEPER[0]):
+        dry = gravity / (2.5 * BOLTZMANN / DRY_AIR.molecule_mass)
+        steep = []
+        for molecules, duration in SIZES:
+            settings = {"molecules": molecules, "width": 1.0, "gravity": gravity, "duration": duration}
+            each, outcome = measured("dsmc", **settings)
+            core, rest = each["mean_core_lapse_rate"], conducted(outcome) / 1000.0
+            steep.append(core.value / dry)
+            rows.append(
+                [
+                    f"{gravity:.3g}",
+                    f"{molecules:,}",
+                    f"{(molecules / 8.0) ** 0.5:.0f}",
+                    f"{rest / dry:.2f}",
+                    measurement(core.value / dry, core.standard_error / dry),
+                    cell(each, "nusselt_number"),
+                ]
+            )
+            if (gravity, molecules) == STEEPER:  # without the uppermost of the rows of the core
+                late = outcome.dataset.isel(height=slice(5, 10))
+                lower = -float(np.polyfit(late.height.values, late.layer_temperature.values, 1)[0])
+                found.number("lower", f"{lower / dry:.2f}")
+                found.number("core", measurement(steep[-1], core.standard_error / dry))
+        if not steep[-1] < steep[0]:
+            found.failures.append(f"in a higher box the core is not nearer to the adiabat: {steep}")
+    found.table(
+        [
+            "gravity [m/s²]",
+            "molecules",
+            "height [mean free paths]",
+            "at rest, over the adiabat",
+            "core, over the adiabat",
+            "heat, over that at rest",
+        ],
+        rows,
+    )
 
 
 @job("convection-stable")

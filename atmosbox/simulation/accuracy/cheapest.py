@@ -70,6 +70,7 @@ def choose(
     target: str | Target,
     settings: Mapping[str, Any] | None = None,
     tables: Mapping[str, Table] | None = None,
+    why: str = "whose errors were not measured",
 ) -> Expectation:
     """Return the cheapest measured run of a scene whose expected error is within a target.
 
@@ -83,6 +84,8 @@ def choose(
         The values that the user has set and that differ from the scene's defaults, by name.
     tables
         The measured tables, by scene; None for those that come with atmosbox.
+    why
+        Why a scene is in no table, as the end of a sentence.
 
     Returns
     -------
@@ -103,7 +106,7 @@ def choose(
     tables = load() if tables is None else tables
     if scene not in tables:
         fix = f"leave it out, or take one of {', '.join(tables)}"
-        raise SettingError("accuracy", target.text, f"is not for {scene}, whose errors were not measured", fix)
+        raise SettingError("accuracy", target.text, f"is not for {scene}, {why}", fix)
     table = tables[scene]
     # a run that ends before it reaches a headline satisfies no target
     ways = tuple(way for way in table.same_experiment(settings or {}) if way.errors.keys() >= table.labels.keys())
