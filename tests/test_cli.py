@@ -928,7 +928,7 @@ def test_a_difference_that_only_the_model_explains_is_explained():
 
 
 def test_a_run_without_headlines_says_why():
-    assert "average" in report.headline_lines([], 80)[0]
+    assert "too short" in report.headline_lines([], 80)[0]
 
 
 # Figures
