@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
+
+import typer
 
 from atmosbox.cli.application import command
 from atmosbox.cli.option import (
@@ -23,12 +26,14 @@ from atmosbox.cli.option import (
 from atmosbox.cli.output_name import chosen, for_scene
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
+from atmosbox.simulation.replay import check_nothing_changes
 from atmosbox.text.progress import progress
 
 
 @command(
     "atmosbox lab temperature",
     "atmosbox lab temperature --set molecules=800 --out warm.html",
+    "atmosbox lab --all --out labs/",
 )
 def lab(
     scene: Annotated[str | None, SceneName] = None,
@@ -38,7 +43,12 @@ def lab(
     seed: Seed = None,
     engine: Engine = None,
     accuracy: Accuracy = None,
-    out: Annotated[str | None, out_option("The page.  [default: SCENE-lab.html in this folder]")] = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Write all scenes and an index of them into a folder, for a course.")
+    ] = False,
+    out: Annotated[
+        str | None, out_option("The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]")
+    ] = None,
     theme: PageTheme = "auto",
     language: Language = "auto",
     force: Force = False,
@@ -51,6 +61,15 @@ def lab(
     it was written with, and gives the same numbers as run. Its knobs act at once; of other settings it offers as many
     values as fit into it. In the page that live opens, all settings can be changed.
     """
+    if every:
+        given = {"scene": scene, "--set": values, "--config": config, "--from": source, "--seed": seed}
+        given |= {"--engine": engine, "--accuracy": accuracy}
+        check_nothing_changes("what --all writes", given)
+        from atmosbox.cli.lab_folder import save_all
+
+        with prints_to_stderr(), progress("lab", quiet=quiet) as show:
+            made = save_all(Path(out or "labs"), theme=theme, language=language, force=force, progress=show)
+        return say(str(made[0]))
     asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
     with progress("lab", quiet=quiet) as show:
         prepared = checked(asked)

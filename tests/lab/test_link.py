@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import atmosbox
-from atmosbox import __version__
+from atmosbox import __version__, scenarios
 from atmosbox.errors import SettingError, UnknownSceneError
 from atmosbox.file.netcdf import read
-from atmosbox.lab import save_lab
+from atmosbox.lab import lab_file, save_lab
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import prepare
 from atmosbox.simulation.recording import Recording
@@ -195,6 +195,26 @@ pieces = st.text(max_size=9) | st.sampled_from(
 def test_any_text_is_a_link_or_refused(text):
     with contextlib.suppress(SettingError, UnknownSceneError):
         assert replayed(text).replay.link.startswith("#atmosbox=")
+
+
+def test_all_scenes_come_with_an_index_in_the_order_of_teaching(usual_tab, tmp_path, monkeypatch):
+    told = scenarios.summaries()
+    monkeypatch.setattr(
+        scenarios, "summaries", lambda: {name: told[name] for name in ("temperature", "elastic-collisions")}
+    )
+    monkeypatch.setattr(lab_file, "_MOST_BYTES", 0)  # one start in each page, which is quicker
+    ended = typed("lab", "--all", "--out", tmp_path / "labs", "--quiet")
+    assert (ended.exit_code, ended.stdout.strip()) == (0, str(tmp_path / "labs" / "index.html"))
+    usual_tab.goto((tmp_path / "labs" / "index.html").as_uri())
+    assert usual_tab.locator("h2").all_inner_texts() == ["Temperature", "Elastic collisions"]
+    assert usual_tab.evaluate("[...document.images].map((each) => each.naturalWidth)") == [480, 480]
+    assert usual_tab.locator("small").first.inner_text() == "school · 10 minutes"
+    usual_tab.click("text=Elastic collisions")
+    usual_tab.wait_for_selector("body[data-ready]")
+    ended = typed("lab", "--all", "--out", tmp_path / "labs")
+    assert (ended.exit_code, "exists already: add --force" in ended.stderr) == (2, True)
+    ended = typed("lab", "temperature", "--all")
+    assert (ended.exit_code, "scene cannot change what --all writes: leave it out" in ended.stderr) == (2, True)
 
 
 def test_a_link_excludes_settings_of_its_own():
