@@ -104,12 +104,14 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     profiles = _profiles(box)
     if box.attracts:
         readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
+    curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
+    series = {name for name, _, _ in readings} | {name for table in curves for name in table["curves"]}
     plan = {
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
             "settle": 0.0 if setup.ends else setup.settle * setup.frame * setup.scale.time / _SECONDS[setup.time_unit],
-            "lesson": _lesson(prepared, readings, setup.time_unit),
+            "lesson": _lesson(prepared, series, setup.time_unit),
         },
         "base": BASE,
         "size": memory.size,
@@ -141,7 +143,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "profiles": profiles,
         "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),
-        "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles),
+        "tables": curves,
         "planned": [_AT_REST] if _has_wind(box) else planned_alone(box),
         "knobs": numbers,
         "units": {},
@@ -242,11 +244,11 @@ def _readings(box: LabBox) -> list[tuple[str, int, float]]:
     return [(name, int(place), float(factor)) for name, place, factor in found]
 
 
-def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]], time_unit: str) -> dict[str, Any]:
-    """Return question and task of the scene, without a task whose variables the page does not measure; no presets."""
+def _lesson(prepared: Prepared, series: set[str], time_unit: str) -> dict[str, Any]:
+    """Return question and task of the scene, without a task whose variables the page does not have; no presets."""
     lesson = lesson_of(prepared.module)
     task = lesson.task
-    if task is None or not {name for name, _, _ in readings}.issuperset(goal["name"] for goal in task["reach"]):
+    if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
         return {"presets": [], "predict": lesson.predict, "task": None}
     units = {_TIME: _SECONDS[time_unit]}  # all other variables of the page are in SI
     scaled = [(goal, units.get(goal["name"], 1.0)) for goal in task["reach"]]

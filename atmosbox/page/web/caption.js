@@ -50,7 +50,11 @@ export function showCaption(parent, runs) {
   };
   const [{ stage }] = runs, { card } = stage;
   if (!card) add("story", story(stage.story));
-  for (const part of PARTS) if (card?.[part]) add("card", phrase(card[part]), word(part));
+  for (const part of PARTS) {
+    if (!card?.[part]) continue;
+    const line = add("card", phrase(card[part]), word(part));
+    if (phrase(card[part]) === card[part]) line.lang = "en"; // not translated
+  }
   const told = (now) => [...new Set(runs.flatMap(({ stage: each, notes = [] }) =>
     [boxSentence(each, now), phrase(each.exaggeration), ...notes.map(phrase)]))].join(" ");
   const drawn = add("drawn", told());
