@@ -454,6 +454,24 @@ def test_a_sheet_is_kept_in_the_format_and_on_the_paper_that_are_asked_for(tmp_p
         sheets.check(tmp_path / "a.pdf", paper="a5")
 
 
+@pytest.mark.parametrize("name", ["temperature", "lifting-dry", "nuclei"])
+def test_a_screen_reader_finds_headings_headers_names_and_descriptions_in_the_page_of_a_sheet(tmp_path, name):
+    page = sheets.save(blank(name), tmp_path / "sheet.html").read_text(encoding="utf-8")
+    tags = re.findall(r"<(\w+)([^>]*)>", page)
+    levels = [int(tag[1]) for tag, _ in tags if re.fullmatch("h[1-6]", tag)]
+    assert (levels[0], set(levels[1:])) == (1, {2})
+    assert '<html lang="en">' in page
+    headers = [attributes for tag, attributes in tags if tag == "th"]
+    assert headers
+    assert all("scope=" in attributes for attributes in headers)
+    assert page.count('<th scope="row"></th>') == 0
+    fields = re.findall(r"<label>(?:\w+: )?<input|<(?:textarea|input)[^>]* aria-label=", page)
+    assert len(fields) == sum(tag in ("input", "textarea") for tag, _ in tags) > 4
+    pictures = [attributes for tag, attributes in tags if tag in ("svg", "img")]
+    assert all('role="img" aria-label="Empty axes' in attributes for attributes in pictures)
+    assert "____" not in page
+
+
 def test_the_command_says_the_path_and_refuses_in_a_sentence(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
