@@ -23,7 +23,7 @@ discs in a plane, and a slab one scale height thick stands for the third dimensi
 """
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 

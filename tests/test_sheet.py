@@ -313,6 +313,24 @@ def test_a_sum_carries_its_error_and_knows_what_it_has_in_common_with_itself():
         filled("{{ A.y.theory }}", names)
 
 
+@pytest.mark.parametrize("name", ["temperature", "lifting-dry", "nuclei"])
+def test_a_screen_reader_finds_headings_headers_names_and_descriptions_in_the_page_of_a_sheet(tmp_path, name):
+    page = sheets.save(blank(name), tmp_path / "sheet.html").read_text(encoding="utf-8")
+    tags = re.findall(r"<(\w+)([^>]*)>", page)
+    levels = [int(tag[1]) for tag, _ in tags if re.fullmatch("h[1-6]", tag)]
+    assert (levels[0], set(levels[1:])) == (1, {2})
+    assert '<html lang="en">' in page
+    headers = [attributes for tag, attributes in tags if tag == "th"]
+    assert headers
+    assert all("scope=" in attributes for attributes in headers)
+    assert page.count('<th scope="row"></th>') == 0
+    fields = re.findall(r"<label>(?:\w+: )?<input|<(?:textarea|input)[^>]* aria-label=", page)
+    assert len(fields) == sum(tag in ("input", "textarea") for tag, _ in tags) > 4
+    pictures = [attributes for tag, attributes in tags if tag in ("svg", "img")]
+    assert all('role="img" aria-label="Empty axes' in attributes for attributes in pictures)
+    assert "____" not in page
+
+
 def test_ctrl_c_writes_nothing(tmp_path, monkeypatch):
     def stopped(*_, **__):
         raise runner.Interrupted(None)

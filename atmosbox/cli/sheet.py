@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     "atmosbox sheet lifting-dry --seed 7 --answers",
     "atmosbox sheet temperature --set temperature=20degC --paper letter --out class.pdf",
     "atmosbox sheet temperature --lab",
-    "atmosbox sheet ./my_scene.py --format md",
+    "atmosbox sheet ./my_scene.py --format html",
 )
 def sheet(
     scene: Annotated[str, SceneName],
@@ -38,7 +38,8 @@ def sheet(
     engine: Engine = None,
     paper: Annotated[Literal["a4", "letter"], typer.Option(help="The size of the pages.")] = "a4",
     format: Annotated[
-        Literal["pdf", "md"] | None, typer.Option(help="The format, where the name of the file does not say it.")
+        Literal["pdf", "html", "md"] | None,
+        typer.Option(help="The format, where the name of the file does not say it."),
     ] = None,
     out: Annotated[
         str | None, out_option("The sheet.  [default: SCENE-sheet.pdf, or SCENE-answers.pdf, in this folder]")

@@ -44,9 +44,9 @@ def tradeoff(
 ) -> None:
     """Measure speed against accuracy: a scene through engines and settings, errors beside seconds.
 
-    Every way of running is run again and again, with other seeds, while the budget lasts; the engines are compiled
-    before. Ctrl-C ends it early and keeps what was measured. Type the same again after a kill: it goes on with the
-    runs that are there.
+    Each engine and setting runs many times, with other seeds, while the budget lasts; the engines are compiled before.
+    Ctrl-C ends it early and keeps what was measured. Type the same again after a kill: it goes on with the runs that
+    are there.
     """
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save

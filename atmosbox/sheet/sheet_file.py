@@ -6,12 +6,13 @@ import os
 from pathlib import Path
 
 from atmosbox.file.output_path import named, write_whole
+from atmosbox.sheet.html import html
 from atmosbox.sheet.pdf import check_paper, load_fonts, pdf
 from atmosbox.sheet.worksheet import Worksheet
 
 __all__ = ["FORMATS", "check", "save"]
 
-FORMATS = ("pdf", "md")
+FORMATS = ("pdf", "html", "md")
 
 
 def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str = "a4", force: bool = False) -> Path:
@@ -21,7 +22,7 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
     ----------
     path : str or path-like
         The file. Its suffix gives the format; if ``format`` is given, a missing suffix is added.
-    format : {"pdf", "md"}, optional
+    format : {"pdf", "html", "md"}, optional
         The format, by default that of the suffix.
     paper : {"a4", "letter"}
         The paper of a PDF.
@@ -44,7 +45,7 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
     --------
     >>> check("sheet.docx")
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: format = docx is unknown: give a file name or format of pdf or md.
+    atmosbox.errors.SettingError: format = docx is unknown: give a file name or format of pdf, html or md.
     """
     path, kind = named(path, format, FORMATS, force=force, what="sheet")
     check_paper(paper)
@@ -90,6 +91,12 @@ def save(
     atmosbox.errors.FileError: The folder no does not exist: type mkdir -p no first.
     """
     path = check(path, format, paper=paper, force=force)
-    content = sheet.text.encode("utf-8") if path.suffix.lower() == ".md" else pdf(sheet, paper).content
+    match path.suffix.lower():
+        case ".pdf":
+            content = pdf(sheet, paper).content
+        case ".html":
+            content = html(sheet).encode("utf-8")
+        case _:
+            content = sheet.text.encode("utf-8")
     write_whole(path, content)
     return path

@@ -8,7 +8,7 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
-from atmosbox.lab.lab_start import lab_starts, served_start
+from atmosbox.lab.lab_start import served_start
 from atmosbox.lab.memory_image import parts
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import SCENES

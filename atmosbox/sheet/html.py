@@ -1,0 +1,132 @@
+"""A sheet as a web page, which a screen reader can read and in which answers can be typed."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+from typing import TYPE_CHECKING
+
+from markdown_it.renderer import RendererHTML
+
+from atmosbox.sheet.marks import PARSER
+from atmosbox.sheet.worksheet import Worksheet
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from markdown_it.token import Token
+
+__all__ = ["html"]
+
+_STYLE = """
+body { max-width: 46rem; margin: 1.5rem auto; padding: 0 1rem; font: 1rem/1.45 system-ui, sans-serif; color: #111; background: #fff; }
+h1, h2 { line-height: 1.2; }
+table { border-collapse: collapse; width: 100%; }
+.wide { overflow-x: auto; }
+th, td { border: 1px solid #666; padding: 0.25rem 0.4rem; text-align: left; vertical-align: top; font-weight: normal; }
+thead th, caption { font-weight: bold; text-align: left; }
+blockquote { margin: 0.4rem 0; padding-left: 0.8rem; border-left: 3px solid #0072b2; }
+ul { list-style: none; padding: 0; }
+pre { overflow-x: auto; }
+textarea { width: 100%; box-sizing: border-box; font: inherit; }
+svg { width: 100%; max-width: 30rem; border: 1px solid #666; }
+"""  # noqa: E501
+_FIELD = re.compile(r"(\w+): _{5,}")
+_COLUMNS = 6
+"""Number of columns of the table."""
+
+
+def html(sheet: Worksheet) -> str:
+    """Return a sheet as one HTML file: headings, a table with headers, fields with names, axes with a description.
+
+    Parameters
+    ----------
+    sheet
+        From `worksheet`.
+
+    Examples
+    --------
+    >>> from atmosbox.sheet import worksheet
+    >>> html(worksheet("lifting-dry")).count("<h1>")
+    1
+    """
+    title = escape(sheet.title + (": answers" if sheet.answers else ""))
+    body = "".join(_blocks(PARSER.parse(sheet.text), ticked=sheet.answers))
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{title}</title>\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<style>{_STYLE}</style>\n</head>\n<body>\n<main>\n{body}</main>\n</body>\n</html>\n"
+    )
+
+
+def _blocks(tokens: Sequence[Token], *, ticked: bool) -> list[str]:
+    """Return the elements of the page, one for each block of the Markdown."""
+    made: list[str] = []
+    starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
+    question, lines = "", 0
+    for first, after in zip(starts, [*starts[1:], len(tokens)], strict=True):
+        block, inside = tokens[first], [token for token in tokens[first:after] if token.type == "inline"]
+        if block.type == "hr":  # a line to write on: those of a question become one field
+            lines += 1
+            if after == len(tokens) or tokens[after].type != "hr":
+                name = f"your answer to question {question}"
+                made.append(f'<textarea rows="{lines}" aria-label="{name}"></textarea>\n')
+                lines = 0
+            continue
+        numbered = re.match(r"\*\*(\d+)\.\*\*", inside[0].content) if inside else None
+        question = numbered[1] if numbered else question
+        if block.type == "table_open":
+            made.append(_table([_inline(token) for token in inside]))
+        elif block.type == "bullet_list_open":
+            made.append(_choices([_inline(token) for token in inside], question, ticked=ticked))
+        elif block.type == "fence" and block.info == "axes":
+            y, *_, x = block.content.splitlines()
+            made.append(_axes(x.partition("> ")[2], y.strip()))
+        else:
+            text = PARSER.renderer.render(tokens[first:after], PARSER.options, {})
+            made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', text))
+    return made
+
+
+def _inline(token: Token) -> str:
+    """Return a line of text as HTML."""
+    return RendererHTML(PARSER).renderInline(token.children or [], PARSER.options, {})
+
+
+def _choices(items: Sequence[str], question: str, *, ticked: bool) -> str:
+    """Return boxes to tick; in a sheet with answers they show what is right and cannot be changed."""
+    rows = []
+    for item in items:
+        state = (" checked" if item.startswith("[x]") else "") + (" disabled" if ticked else "")
+        rows.append(f'<li><label><input type="checkbox"{state}> {item[4:]}</label></li>')
+    return f'<ul aria-label="choices of question {question}">\n' + "\n".join(rows) + "\n</ul>\n"
+
+
+def _table(cells: Sequence[str]) -> str:
+    """Return the table: each row begins with its quantity and its run, so that it can be understood alone."""
+    head, *rows = [cells[first : first + _COLUMNS] for first in range(0, len(cells), _COLUMNS)]
+    made = ['<div class="wide" tabindex="0">\n<table>\n<caption>Measurements</caption>\n<thead><tr>']
+    made += [f'<th scope="col">{name}</th>' for name in head]
+    made.append("</tr></thead>\n<tbody>\n")
+    quantity, formula = "", ""
+    for label, theory, run, *others in rows:
+        quantity, formula = (label, theory) if label else (quantity, formula)
+        row = f'<th scope="row">{quantity}</th><td>{formula}</td><td>{run}</td>'
+        named = f"{re.sub('<.*?>', '', quantity)}, run {run}"
+        fields = (
+            f'<input type="text" size="9" aria-label="{what}, {named}">' if other in ("", "±") else other
+            for what, other in zip(head[3:], others, strict=True)
+        )
+        made.append(f"<tr>{row}{''.join(f'<td>{field}</td>' for field in fields)}</tr>\n")
+    return "".join([*made, "</tbody>\n</table>\n</div>\n"])
+
+
+def _axes(x: str, y: str) -> str:
+    """Return empty axes to draw into, with a description."""
+    x, y = escape(x), escape(y)
+    return (
+        f'<svg role="img" aria-label="Empty axes for a sketch: horizontally {x}, vertically {y}" viewBox="0 0 480 170">'
+        '<path d="M20 20V145H440" fill="none" stroke="#111" stroke-width="1.5"/>'
+        f'<text x="26" y="16" font-size="12">{y}</text>'
+        f'<text x="440" y="162" font-size="12" text-anchor="end">{x}</text></svg>\n'
+    )
