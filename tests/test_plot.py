@@ -644,6 +644,18 @@ def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so(runs,
     assert not any("hollow" in text for text in written(drawings["atmosphere", "notes"]))
 
 
+@pytest.mark.parametrize(("scale", "left"), [("linear", 0.0), ("log", 0.5)])
+def test_a_curve_begins_at_its_start_and_a_guide_stands_at_its_value_within_the_limits(scale, left):
+    frames = {"start": (0.0, 5.0), "guides": (("y", 9.0, "nine"), ("y", 99.0, "beyond")), "y_limits": (0.0, 20.0)}
+    panel = replace(TEMPERATURE, lines=(replace(TIME, error=None),), x_scale=scale, **frames)
+    dataset = small([280.0, 290.0], panel).assign_coords(elapsed_time=("elapsed_time", [1.0, 2.0], {"units": "ns"}))
+    axes = plot.figure(dataset).axes[0]
+    assert axes.lines[0].get_xdata().tolist() == [left, 1.0, 2.0]
+    assert axes.lines[0].get_ydata()[0] == 5.0
+    assert [text.get_text() for text in axes.texts if text.get_text()] == ["nine", "start"]
+    assert axes.get_ylim() == (0.0, 20.0)
+
+
 def test_a_curve_that_goes_up_and_down_often_is_thin_and_its_legend_is_not():
     rng = np.random.default_rng(5)
     panel = Panel("line", "T", (Line("elapsed_time", "air_temperature", "air"), replace(TIME, error=None)))
