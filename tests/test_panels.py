@@ -14,6 +14,9 @@ FIGURE = (
     Panel("histogram", "Speeds", (Line("speed", "speed_probability_density", "measured"),), x_invert=True),
     Panel("discs", "The box", x_unit="nm"),
     Panel("line", "Long noise", (WALL,), x_scale="log", averages=30),
+    Panel(
+        "profile", "Half", (MISFIT,), start=(15.0, 0.0), guides=(("y", 5.4, "half"),), y_limits=(0.0, 9.0), areas=True
+    ),
 )
 
 
@@ -32,6 +35,8 @@ def test_a_panel_that_cannot_be_drawn_is_refused_where_it_is_written():
         (lambda: Panel("pie", "A panel", (AIR,)), "one of line, profile, histogram, discs"),
         (lambda: Panel("line", "", (AIR,)), "the title of a panel"),
         (lambda: Panel("line", "A panel"), "needs at least one line"),
+        (lambda: Panel("line", "A panel", (AIR,), start=(1.0,)), "and has two numbers"),
+        (lambda: Panel("line", "A panel", (AIR,), guides=(("z", 1.0, ""),)), "is not an axis, a value and a text"),
         (lambda: Panel("discs", "A panel", (AIR,)), "has no lines"),
         (lambda: Panel("line", "A panel", [AIR]), "lines of the panel 'A panel' is no tuple of Line"),
         (lambda: Panel("line", "A panel", (AIR,), headlines=(1,)), "headlines of the panel"),
