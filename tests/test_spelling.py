@@ -102,6 +102,20 @@ WORDS = {
     r"and that is all": "and nothing else",
     r"nothing (that )?stands still": "molecules still condense and evaporate",
     r"check of neither": "tests nothing",
+    r"(never|ever) part|part again": "separate",
+    r"(never|ever) comes? to rest": "keeps fluctuating",
+    r"updraughts?": "updraft",
+    r"way of running": "engine and setting",
+    r"next to no time": "a vanishing time",
+    r"open air": "far from walls",
+    r"figure of speech": "what happens",
+    r"letting time pass": "to compute",
+    r"memory of the gas": "the time in which the gas exchanges its energy",
+    r"hands? over": "passes over",
+    r"same work is": "from how many degrees of freedom the work is taken",
+    r"who carries|who changes the": "what",
+    r"another history": "grows in other steps",
+    r"at the expense of": "gained from, takes from",
 }
 """Words and turns of phrase that a first-year student has to guess at, and what to say."""
 
