@@ -649,8 +649,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "energy",
         "zJ",
     )
+    warming = "Condensation releases heat" if settings.bath == "none" else "At first condensation warms it"
     warm = over_time(
-        "At first condensation warms it" if settings.start == "vapour" else "Temperature",
+        warming if settings.start == "vapour" else "Temperature",
         {"air_temperature": "molecules"},
         "temperature",
         "K",
