@@ -534,7 +534,7 @@ TASKS = {
     "lifting-dry": ({"molecules": 400}, {"altitude": 4.6}, 40),
     "convection": ({}, {"floor_temperature": -245, "ceiling_temperature": 270}, 110),
     "evaporation": ({}, {"temperature": 36}, 250),
-    "condensation": ({}, {"temperature": 31.8}, 200),
+    "condensation": ({}, {"temperature": 9.7}, 200),
     "nuclei": ({}, {"presets": "Water without surface tension"}, 20),
     "lifting-moist": ({}, {"altitude": 4.3}, 60),
     "lifting-sounding": ({}, {"altitude": 5.8}, 70),
