@@ -19,6 +19,7 @@ rises, hardly rises while the drop evaporates, and rises again. Other defaults t
 85 K, density 0.1, 3 ns.
 """
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -300,7 +301,10 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         pressure = _pressure_of_gas(density, dataset.air_temperature.values / scale.temperature, settings)
         # where the series is negative it is not valid: a vapour so cold and dense must condense
         found["virial_pressure_theory"] = np.where(pressure > 0.0, pressure, np.nan)
-    return found
+    # it is that of the settings, and ends where a knob is turned
+    turns = json.loads(dataset.attrs.get("atmosbox_turns", "[]"))
+    valid = np.arange(frames) < (turns[0]["frame"] if turns else frames)
+    return {name: np.where(valid, values, np.nan) for name, values in found.items()}
 
 
 def _units_of_slab(scale: Scale) -> dict[str, float]:

@@ -37,6 +37,7 @@ a:hover, a:focus-visible { border-color: #0072b2; }
 img { display: block; width: 100%; aspect-ratio: 4 / 3; object-fit: contain; }
 h2 { margin: 0.5rem 0 0.25rem; font-size: 1.125rem; color: #0072b2; }
 p { margin: 0; }
+h1 + p { margin-bottom: 1rem; }
 small { color: #566270; }
 </style>
 </head>

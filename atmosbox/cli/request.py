@@ -132,6 +132,8 @@ def _earlier(path: str) -> Asked:
     scene, settings, kept = made.get("scene"), made.get("settings"), made.get("save_molecules")
     if not isinstance(scene, str) or not isinstance(settings, dict):
         raise FileError(f"{path} does not say which run it holds: give a file that atmosbox has written.")
+    if "replay" in made:
+        tell(f"note: in {path} knobs may have been turned, and this run turns none; --replay does")
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
     return Asked(scene, settings, str(made.get("engine", "exact")), kept if isinstance(kept, bool) else None)

@@ -71,6 +71,7 @@ ATTRIBUTES = {
     "atmosbox_format": "version of this layout",
     "atmosbox_status": "`complete`, `partial` (the run is under way or was killed) or `interrupted` (by Ctrl-C)",
     "atmosbox_parameters": "JSON: scene, settings, engine, version, expected errors; `--from FILE` repeats the run",
+    "atmosbox_turns": "JSON: each turn of a knob in a [replayed run](lab.md#a-link-is-the-run), with its frame",
     "atmosbox_panels": "JSON: what the figure shows; `atmosbox plot` needs nothing else",
     "atmosbox_headlines": "JSON: the names of the headline numbers, in order",
 }
@@ -80,7 +81,7 @@ ATTRIBUTES = {
 def attributes(found: Findings) -> None:
     """Make the table of the global attributes, and fail if a file has others."""
     made = set(global_attributes({"engine": "exact"}, title="a", command="b", comment="c", references="d"))
-    made.add("atmosbox_headlines")
+    made |= {"atmosbox_headlines", "atmosbox_turns"}
     if made != set(ATTRIBUTES):
         found.failures.append(f"the attributes are not those of the page: {sorted(made ^ set(ATTRIBUTES))}")
     found.table(["attribute", "what it says"], [[f"`{name}`", text] for name, text in ATTRIBUTES.items()])

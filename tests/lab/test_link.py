@@ -217,6 +217,12 @@ def test_all_scenes_come_with_an_index_in_the_order_of_teaching(usual_tab, tmp_p
     assert (ended.exit_code, "scene cannot change what --all writes: leave it out" in ended.stderr) == (2, True)
 
 
+def test_theory_of_a_thermostat_ends_where_a_knob_is_turned():
+    link = f"#atmosbox={__version__}&scene=attraction&molecules=60&seed=1&turns=3:temperature:200&frames=6&end"
+    theory = atmosbox.run(replay=link, progress=False).air_temperature_theory.values
+    assert np.isfinite(theory).tolist() == [True] * 3 + [False] * 3
+
+
 def test_a_link_excludes_settings_of_its_own():
     for words in (["seed", "3"], ["set", "molecules=60"], ["engine", "dsmc"]):
         ended = typed("run", "--replay", WHOLE, f"--{words[0]}", words[1])
