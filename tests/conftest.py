@@ -115,12 +115,14 @@ def name_of_browser():
 
 @pytest.fixture(scope="session", autouse=True)
 def interruptible():
-    """Let SIGINT interrupt this process and those it starts, also if whoever started the suite has it ignored.
+    """Let SIGINT and SIGHUP reach this process and those it starts, also if whoever started the suite has them ignored.
 
-    A shell without job control starts what it leaves in the background so.
+    A shell without job control, or nohup, starts what it leaves in the background so.
     """
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    for name, usual in (("SIGINT", signal.default_int_handler), ("SIGHUP", signal.SIG_DFL)):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number is not None and signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, usual)
 
 
 @pytest.fixture(scope="session")
