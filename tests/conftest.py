@@ -45,11 +45,7 @@ def pytest_addoption(parser):
     parser.addoption("--fuzz", type=int, default=1, help="how many times as many examples hypothesis tries")
 
 
-@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    for item in items:
-        if item.get_closest_marker("validate"):
-            item.add_marker("nightly")
     named = any("::" in argument for argument in config.args)
     more = config.getoption("--fuzz")
     if more > 1:

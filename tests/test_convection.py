@@ -135,7 +135,7 @@ def test_wind_and_heat_are_compared_with_air_at_rest_only_where_buoyancy_does_no
     assert all(each.name != "mean_square_wind" for each in viscous.headlines)
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 def test_rolls_of_sixty_seeds_grow_as_linear_theory_says_within_their_errors():
     """Of one processor it takes half an hour."""
     runs = [ran("dsmc", molecules=100_000, duration=500.0, seed=seed) for seed in range(1, 61)]

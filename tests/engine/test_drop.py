@@ -1,7 +1,7 @@
 """Drops keep the balances at every event, stay in the box, merge, and do the same however a run is divided.
 
 The boxes below need one set of kernels, that of the scenes: each new set costs seconds of compilation, so that those
-of boxes that no scene has, periodic or under a piston, are left to the validate tier.
+of boxes that no scene has, periodic or under a piston, are left to the nightly tier.
 """
 
 import math
@@ -75,7 +75,7 @@ def box(name, drops=None, **changes):
     return damp(drops or nuclei(), walls=walls, **options | changes)
 
 
-own_kernels = pytest.mark.validate  # each of the two takes 12 s or more to compile, and no scene has such a box
+own_kernels = pytest.mark.nightly  # each of the two takes 12 s or more to compile, and no scene has such a box
 by_name = pytest.mark.parametrize(
     "name",
     ["smooth", "between heat baths", *(pytest.param(n, marks=own_kernels) for n in ("periodic", "under a piston"))],

@@ -108,7 +108,7 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
             (walls, 0.3)
             for walls in ((*TURNING[:4], *SMOOTH[:2]), (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))
         ),
-        pytest.param(SMOOTH, 0.3, marks=pytest.mark.validate),
+        pytest.param(SMOOTH, 0.3, marks=pytest.mark.nightly),
     ],
 )
 def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):

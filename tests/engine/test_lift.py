@@ -60,7 +60,7 @@ OWN_KERNELS = ("between periodic sides", "pool")
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.validate if n in OWN_KERNELS else ()) for n in BOXES]
+    "name", [pytest.param(n, marks=pytest.mark.nightly if n in OWN_KERNELS else ()) for n in BOXES]
 )
 def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
     start = pressure_of(name)
@@ -79,7 +79,7 @@ def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
     assert box.ledger() < 1e-12
 
 
-@pytest.mark.parametrize("name", ["dry", pytest.param("mist", marks=pytest.mark.validate)])  # kernels of its own
+@pytest.mark.parametrize("name", ["dry", pytest.param("mist", marks=pytest.mark.nightly)])  # kernels of its own
 def test_a_driver_in_python_lifts_the_box_alike_until_rounding_has_grown(name):
     start = pressure_of(name)
     ours, theirs = BOXES[name](follow(start, 0.5 * start)), BOXES[name](follow(start, 0.5 * start, InPython))

@@ -1,7 +1,7 @@
 """Moist air keeps its energy and its water at every event, on the exact engine and on dsmc, also with few molecules.
 
 In both engines all liquid is a mist or a pool. A box under a piston between periodic sides, and a periodic one, need
-kernels of the exact engine that no scene has: they are left to the validate tier.
+kernels of the exact engine that no scene has: they are left to the nightly tier.
 """
 
 import math
@@ -92,7 +92,7 @@ BOXES = {
 }
 OWN_KERNELS = ("periodic", "mist under a piston", "pool under a piston")
 CASES = [
-    pytest.param(engine, name, marks=pytest.mark.validate if engine == "exact" and name in OWN_KERNELS else ())
+    pytest.param(engine, name, marks=pytest.mark.nightly if engine == "exact" and name in OWN_KERNELS else ())
     for engine in ENGINES
     for name in BOXES
     if (engine, name) != ("dsmc", "lifted mist")
@@ -223,7 +223,7 @@ def test_the_spectrum_counts_each_molecule_that_left_with_seven_half_kT(engine):
     assert 3.0 < np.sum(middle * counts) / counts.sum() < 4.0
 
 
-@pytest.mark.parametrize("engine", [pytest.param("exact", marks=pytest.mark.validate), "dsmc"])  # kernels of its own
+@pytest.mark.parametrize("engine", [pytest.param("exact", marks=pytest.mark.nightly), "dsmc"])  # kernels of its own
 def test_a_contact_of_unlike_molecules_keeps_energy_and_momentum(engine):
     still = Mist(water(1e-300), number=0, area=1e-9)
     parcel = moist(still, 100, 100, engine=engine, sides=(10.0, 10.0, 10.0), walls=TURNING)
@@ -264,8 +264,8 @@ def test_unlike_molecules_of_dsmc_come_to_one_temperature():
         ("exact", 1, "smooth or warm"),
         ("dsmc", 0, "smooth or warm"),
         ("dsmc", 0, "piston"),
-        pytest.param("exact", 0, "smooth or warm", marks=pytest.mark.validate),  # without a kind: more kernels
-        pytest.param("exact", 0, "piston", marks=pytest.mark.validate),
+        pytest.param("exact", 0, "smooth or warm", marks=pytest.mark.nightly),  # without a kind: more kernels
+        pytest.param("exact", 0, "piston", marks=pytest.mark.nightly),
     ],
 )
 @settings(max_examples=24)
@@ -336,7 +336,7 @@ def test_without_water_and_liquid_dsmc_does_as_in_dry_air_to_the_last_byte():
     assert np.array_equal(damp.wall_impulse, dry.wall_impulse)
 
 
-@pytest.mark.parametrize("engine", [pytest.param("exact", marks=pytest.mark.validate), "dsmc"])
+@pytest.mark.parametrize("engine", [pytest.param("exact", marks=pytest.mark.nightly), "dsmc"])
 def test_an_empty_box_with_an_empty_mist_lets_time_pass(engine):
     parcel = moist(Mist(water(rotation=0.0)), 0, 0, engine=engine)
     parcel.advance(1e3)

@@ -223,7 +223,7 @@ def test_the_driver_is_asked_at_the_multiples_of_its_interval():
 # boxes with no or one molecule need further kernels: numba knows arrays of so few elements by another type
 FEW = [(name, number) for name in ("equal", "piston", "mixed", "periodic") for number in range(4)]
 FEW = [
-    pytest.param(name, number, marks=pytest.mark.validate if number < (1 if name == "equal" else 2) else ())
+    pytest.param(name, number, marks=pytest.mark.nightly if number < (1 if name == "equal" else 2) else ())
     for name, number in FEW
 ]
 

@@ -26,7 +26,7 @@ def box(name, substance=None, *, air=20, vapour=10, number=30, area=60.0, **opti
 
 
 by_name = pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.validate if name in OWN_KERNELS else ()) for name in BOXES]
+    "name", [pytest.param(name, marks=pytest.mark.nightly if name in OWN_KERNELS else ()) for name in BOXES]
 )
 
 
@@ -105,7 +105,7 @@ def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypa
 
 
 @many_events
-@pytest.mark.parametrize("name", ["mist", "pool", pytest.param("periodic", marks=pytest.mark.validate)])
+@pytest.mark.parametrize("name", ["mist", "pool", pytest.param("periodic", marks=pytest.mark.nightly)])
 def test_a_molecule_that_evaporates_may_appear_anywhere(name, monkeypatch):
     monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
     sides = np.array([4.0, 5.0, 6.0])
@@ -141,7 +141,7 @@ def test_a_molecule_that_evaporates_may_appear_anywhere(name, monkeypatch):
 
 @many_events
 @pytest.mark.parametrize(
-    ("number", "crowded"), [(60, False), pytest.param(400, True, marks=pytest.mark.validate)], ids=["longer", "lists"]
+    ("number", "crowded"), [(60, False), pytest.param(400, True, marks=pytest.mark.nightly)], ids=["longer", "lists"]
 )
 def test_rows_grow_where_many_leave_a_pool_at_once(number, crowded):
     # a small floor, from which more than fill a row, or the longest there is, come up within one mean free time

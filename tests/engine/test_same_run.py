@@ -216,7 +216,7 @@ def test_a_copy_does_what_the_original_does(name):
         assert bits(twin) == bits(box), how
 
 
-@pytest.mark.parametrize("name", ["points", "dsmc", pytest.param("dsmc over a pool", marks=pytest.mark.validate)])
+@pytest.mark.parametrize("name", ["points", "dsmc", pytest.param("dsmc over a pool", marks=pytest.mark.nightly)])
 def test_another_seed_is_another_run_and_another_number_of_threads_the_same(name):
     runs = []
     for changes in ({}, {"threads": 3}, {"seed": 7}):

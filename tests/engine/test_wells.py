@@ -84,7 +84,7 @@ def steps(box, most):
 
 
 @pytest.mark.parametrize(
-    "family", [pytest.param(name, marks=pytest.mark.validate if name == "a plane" else ()) for name in FAMILIES]
+    "family", [pytest.param(name, marks=pytest.mark.nightly if name == "a plane" else ()) for name in FAMILIES]
 )
 def test_the_engine_meets_the_same_events_as_the_reference(family):
     seen = dict.fromkeys(("contact", "capture", "release", "wall hit", "drawn"), 0)
@@ -176,7 +176,7 @@ def test_strength_and_gravity_may_change_and_the_ledger_has_it():
     assert box.ledger() < 1e-12
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 def test_gravity_may_be_switched_on_and_pulls_the_liquid_down():
     random = np.random.default_rng(4)
     position = random_positions((8, 8, 8), np.ones(100), random)

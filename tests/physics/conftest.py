@@ -191,7 +191,7 @@ def vapour_number(saturated, molecules):
 @pytest.fixture(autouse=True)
 def nothing_hangs(request):
     """End the whole run, with a traceback, if a test makes no progress: Ctrl-C cannot stop a kernel."""
-    long = request.node.get_closest_marker("validate") is not None
+    long = request.node.get_closest_marker("nightly") is not None
     faulthandler.dump_traceback_later(7200.0 if long else 900.0, exit=True, file=sys.__stderr__)
     yield
     faulthandler.cancel_dump_traceback_later()

@@ -90,7 +90,7 @@ def test_a_gas_has_the_pressure_of_its_virial_coefficients():
     assert ideal - pressure.value > 3.0 * pressure.standard_error  # the effect of attraction is visible
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 @pytest.mark.parametrize("kelvin", [124.0, 136.0])
 def test_a_slab_has_the_vapour_pressure_of_published_simulations(kelvin):
     data, found, outcome = run(start="slab", density=1.0, molecules=500, temperature=f"{kelvin} K", duration="4 ns")

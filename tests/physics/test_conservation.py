@@ -12,7 +12,7 @@ from atmosbox.engine.core.measure import momentum
 S, P = Specular(), Periodic()
 
 
-@pytest.mark.parametrize("contacts", [3e5, pytest.param(1e7, marks=pytest.mark.validate)])
+@pytest.mark.parametrize("contacts", [3e5, pytest.param(1e7, marks=pytest.mark.nightly)])
 def test_energy_is_kept_to_rounding_with_gravity_and_walls(gas, contacts):
     box = gas(400, (11.0, 11.0, 14.0), gravity=0.1, seed=1)
     before = sum(box.energy())

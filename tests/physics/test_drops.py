@@ -125,7 +125,7 @@ def agrees(values, exact, within):
         (10.0, 1.0, 0.0),
         (0.0, 0.5, 0.2),
         *(
-            pytest.param(*case, marks=pytest.mark.validate)
+            pytest.param(*case, marks=pytest.mark.nightly)
             for case in ((0.0, 1.0, 0.0), (10.0, 0.3, 0.0), (10.0, 1.0, 0.2))
         ),
     ],
@@ -170,7 +170,7 @@ BATHS = (HeatBath(1.0),) * 6
 
 
 @pytest.mark.parametrize(
-    ("position", "saturated"), [pytest.param(MIDDLE, 20.0, marks=pytest.mark.validate), (PAIR, 20.0), (MIDDLE, 3.0)]
+    ("position", "saturated"), [pytest.param(MIDDLE, 20.0, marks=pytest.mark.nightly), (PAIR, 20.0), (MIDDLE, 3.0)]
 )
 def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
     molecules = round(6 * saturated) - 7
@@ -186,7 +186,7 @@ def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
     agrees(rows, np.array([vapour, 1.0]), 0.015 * np.array([vapour, 1.0]))
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
     # forty molecules of air, each of which has 0.8 % less room for every molecule that joins the drop
     molecules, air, rng = 30, 40, np.random.default_rng(5)
@@ -214,7 +214,7 @@ def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
 
 @pytest.mark.parametrize(
     ("mass", "ball"),
-    [(0.5, 0.15), *(pytest.param(*case, marks=pytest.mark.validate) for case in ((0.5, 0.0), (10.0, 0.15)))],
+    [(0.5, 0.15), *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((0.5, 0.0), (10.0, 0.15)))],
 )
 def test_a_light_drop_that_flies_about_is_in_the_same_balance(mass, ball):
     # it moves freely in the box, and has hardly more mass than a molecule

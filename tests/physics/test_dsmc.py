@@ -99,7 +99,7 @@ def test_a_column_between_heat_baths_is_barometric_and_isothermal():
     assert box.contacts > 10 * number
 
 
-@pytest.mark.parametrize("dt", [pytest.param(0.2, marks=pytest.mark.validate), 2.0])
+@pytest.mark.parametrize("dt", [pytest.param(0.2, marks=pytest.mark.nightly), 2.0])
 def test_walls_give_a_gas_their_temperature_however_long_the_step(dt):
     # a molecule that a wall emits flies for the rest of the step: otherwise long steps would make the gas too hot
     number, kT = 1000, 1.3
@@ -171,7 +171,7 @@ def test_a_slow_piston_cools_and_warms_a_diatomic_gas_along_its_adiabat():
     assert np.abs(np.array(exponents) + 0.4).max() < 0.03
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 @pytest.mark.parametrize("dt", [0.2, 1.0, 2.0])
 def test_self_diffusion_errs_with_the_time_step_as_the_trapezoid_rule_does(dt):
     # D is the sum of the velocities' memory over steps, and that decays with the time t = m D / kT: the sum is

@@ -28,7 +28,7 @@ def diameter(number_density):
 
 
 @pytest.mark.parametrize(
-    "steps", [20_000, pytest.param(500_000, marks=pytest.mark.validate)], ids=["5 percent", "1 percent"]
+    "steps", [20_000, pytest.param(500_000, marks=pytest.mark.nightly)], ids=["5 percent", "1 percent"]
 )
 def test_viscosity_is_that_of_chapman_and_enskog(steps):
     # Green and Kubo: the fluctuations of the five components of the stress, over their correlation time
@@ -63,7 +63,7 @@ def test_viscosity_is_that_of_chapman_and_enskog(steps):
     assert abs(mean - 1.0) < 4.0 * error
 
 
-@pytest.mark.parametrize(("cell", "width"), [pytest.param(0.5, 3.0, marks=pytest.mark.validate), (1.0, 6.0)])
+@pytest.mark.parametrize(("cell", "width"), [pytest.param(0.5, 3.0, marks=pytest.mark.nightly), (1.0, 6.0)])
 def test_conductivity_is_that_of_chapman_and_enskog_and_grows_with_the_square_of_the_cell(cell, width):
     # a slab between two walls: T^(3/2) is linear in its middle, far from the walls
     height, occupancy, layers = 25.0, 10.0, 30

@@ -74,7 +74,7 @@ def compare(gas, row, number, contacts):
 
 
 @pytest.mark.parametrize(
-    ("number", "contacts"), [(500, 3e5), pytest.param(2000, 6e6, marks=pytest.mark.validate)], ids=["", "long"]
+    ("number", "contacts"), [(500, 3e5), pytest.param(2000, 6e6, marks=pytest.mark.nightly)], ids=["", "long"]
 )
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"phi={row[0]}")
 def test_spheres_press_and_meet_as_molecular_dynamics_and_enskog_say(gas, row, number, contacts):

@@ -63,7 +63,7 @@ def maxwellian(gas, number, samples):
     return found.size
 
 
-@pytest.mark.parametrize(("number", "samples"), [(1000, 20), pytest.param(5000, 200, marks=pytest.mark.validate)])
+@pytest.mark.parametrize(("number", "samples"), [(1000, 20), pytest.param(5000, 200, marks=pytest.mark.nightly)])
 def test_molecules_of_one_speed_become_maxwells(gas, number, samples):
     assert maxwellian(gas, number, samples) == number * samples
 

@@ -93,7 +93,7 @@ RADII = [(60, 44), (110, 38), (200, 33)]
     [
         (*RADII[0], 6000, 0.02),
         (*RADII[2], 6000, 0.02),
-        *(pytest.param(*each, 100_000, 0.005, marks=pytest.mark.validate) for each in RADII),
+        *(pytest.param(*each, 100_000, 0.005, marks=pytest.mark.nightly) for each in RADII),
     ],
 )
 def test_the_vapour_over_a_drop_follows_kelvin(number, vapour, samples, within):
@@ -113,7 +113,7 @@ def test_the_vapour_over_a_drop_with_salt_follows_koehler(number, vapour):
 
 
 @many_events
-@pytest.mark.validate
+@pytest.mark.nightly
 def test_the_measured_maximum_is_that_of_koehler():
     # a cubic in ln n through the humidity over drops of eight sizes, on both sides of the maximum
     salt, noise = 20.0, np.random.default_rng(8)
@@ -162,7 +162,7 @@ def grown(number, humidity, salt=0.0, until=40.0, seed=3, vapour=2500):
 
 
 @many_events
-@pytest.mark.parametrize("seed", [pytest.param(3, marks=pytest.mark.validate), 4])
+@pytest.mark.parametrize("seed", [pytest.param(3, marks=pytest.mark.nightly), 4])
 def test_a_pure_drop_a_tenth_below_the_critical_radius_vanishes_and_one_a_tenth_above_grows(seed):
     n, over = np.arange(1.0, 2000.0), vapour_over_drop(np.arange(1.0, 2000.0), STEEP, 0.0, FINE, FINE)
     critical = n[over > 2.5][-1]

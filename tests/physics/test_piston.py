@@ -23,7 +23,7 @@ def mean_and_error(values):
 
 @pytest.mark.parametrize(
     ("rotation", "speed"),
-    [(2, -0.01), (2, 0.01), *(pytest.param(rotation, -0.01, marks=pytest.mark.validate) for rotation in (0, 3))],
+    [(2, -0.01), (2, 0.01), *(pytest.param(rotation, -0.01, marks=pytest.mark.nightly) for rotation in (0, 3))],
 )
 def test_a_slow_piston_warms_or_cools_spheres_along_their_adiabat(gas, rotation, speed):
     number, side, height, diameter = 500, 7.0, 10.0, 0.3

@@ -52,7 +52,7 @@ def compare(gas, row, number, contacts):
 
 
 @pytest.mark.parametrize(
-    ("number", "contacts"), [(400, 3e5), pytest.param(2000, 6e6, marks=pytest.mark.validate)], ids=["", "long"]
+    ("number", "contacts"), [(400, 3e5), pytest.param(2000, 6e6, marks=pytest.mark.nightly)], ids=["", "long"]
 )
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"eta={row[0]}")
 def test_discs_press_and_meet_as_their_equation_of_state_says(gas, row, number, contacts):

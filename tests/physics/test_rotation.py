@@ -32,7 +32,7 @@ def shares(box, warm_up, step, samples):
         (2, 5.0, False),
         (3, 1.0, False),
         (2, 1.0, True),
-        *(pytest.param(*case, False, marks=pytest.mark.validate) for case in ((2, 1.0), (3, 5.0))),
+        *(pytest.param(*case, False, marks=pytest.mark.nightly) for case in ((2, 1.0), (3, 5.0))),
     ],
 )
 def test_motion_and_rotation_share_the_energy_by_their_degrees_of_freedom(gas, rotation, collision_number, planar):

@@ -32,8 +32,8 @@ def ascents(seeds, **settings):
     ("molecules", "length", "seeds"),
     [
         (300, 100, 60),
-        pytest.param(1000, 1600, 60, marks=pytest.mark.validate),
-        pytest.param(4000, 100, 30, marks=pytest.mark.validate),
+        pytest.param(1000, 1600, 60, marks=pytest.mark.nightly),
+        pytest.param(4000, 100, 30, marks=pytest.mark.nightly),
     ],
 )
 def test_parcels_scatter_about_theory_by_the_error_that_they_state(molecules, length, seeds):
@@ -54,7 +54,7 @@ def test_parcels_scatter_about_theory_by_the_error_that_they_state(molecules, le
 
 
 @pytest.mark.parametrize(
-    "settings", [pytest.param({}, marks=pytest.mark.validate), {"rotation": False}, {"top_pressure": "100 hPa"}]
+    "settings", [pytest.param({}, marks=pytest.mark.nightly), {"rotation": False}, {"top_pressure": "100 hPa"}]
 )
 def test_a_fast_parcel_is_as_much_too_warm_as_the_viscosity_of_its_gas_demands(settings):
     length = 200

@@ -63,7 +63,7 @@ def test_in_a_very_thin_gas_a_molecule_has_as_many_partners_as_boltzmann_says():
 
 
 @pytest.mark.parametrize(
-    ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.validate) for kT in (1.0, 1.5, 2.0, 3.0))]
+    ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.nightly) for kT in (1.0, 1.5, 2.0, 3.0))]
 )
 def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
     """Z - 1 and u at phi = .01, from the momentum that pairs transfer: B2 and B3 together, in 4 standard errors.
@@ -92,7 +92,7 @@ def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
     assert abs(energy.mean - square_well_energy(density, kT)) < 4.0 * energy.standard_error
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 @pytest.mark.parametrize("kelvin", [123.8, 136.2])
 def test_liquid_and_vapour_without_a_surface_are_those_of_a_slab(kelvin):
     """At T* of 1.0 and 1.1: the vapour by its pressure, the liquid by its density, both by their energy.

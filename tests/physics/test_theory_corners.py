@@ -209,7 +209,7 @@ def test_the_theory_of_a_scene_holds_at_the_corners_of_its_settings(scene):
     at()
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 @pytest.mark.parametrize("scene", SCENES)
 def test_the_theory_of_a_scene_holds_at_many_more_corners(scene):
     ran = []

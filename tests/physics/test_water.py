@@ -47,7 +47,7 @@ LONG = [
 
 
 @pytest.mark.parametrize(
-    ("name", "dt", "air", "samples"), [*QUICK, *(pytest.param(*case, marks=pytest.mark.validate) for case in LONG)]
+    ("name", "dt", "air", "samples"), [*QUICK, *(pytest.param(*case, marks=pytest.mark.nightly) for case in LONG)]
 )
 def test_an_isolated_box_visits_all_states_alike(wet, name, dt, air, samples):
     # 10 numbers a case: a false alarm once in 30 for all quick cases of fresh seeds
@@ -65,7 +65,7 @@ def test_an_isolated_box_visits_all_states_alike(wet, name, dt, air, samples):
     [
         (Mist, 2, SMALL),
         (Pool, 1, 0.3),
-        *(pytest.param(*case, marks=pytest.mark.validate) for case in ((Mist, 1, 0.3), (Pool, 2, SMALL))),
+        *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((Mist, 1, 0.3), (Pool, 2, SMALL))),
     ],
 )
 def test_the_liquid_shares_its_energy_evenly_with_air_of_any_size(wet, kind, air, air_diameter):
@@ -107,7 +107,7 @@ def test_the_liquid_shares_its_energy_evenly_with_air_of_any_size(wet, kind, air
         (MoistDsmcParcel, Mist, 5, 0.0, 0.4),
         (MoistDsmcParcel, Pool, 120, 0.0, 0.4),
         *(
-            pytest.param(parcel, *case, marks=pytest.mark.validate)
+            pytest.param(parcel, *case, marks=pytest.mark.nightly)
             for parcel in (MoistParcelSet, MoistDsmcParcel)
             for case in ((Mist, 120, 0.0, 0.4), (Mist, 5, 10.0, 1.0), (Pool, 120, 10.0, 1.0))
         ),
@@ -227,7 +227,7 @@ def thinned_by_edges(filled):
     ("kind", "walls", "options"),
     [
         # needs further kernels
-        pytest.param(Mist, (Periodic(),) * 6, {"nuclei": 1e5, "area": 400.0}, marks=pytest.mark.validate),
+        pytest.param(Mist, (Periodic(),) * 6, {"nuclei": 1e5, "area": 400.0}, marks=pytest.mark.nightly),
         (Mist, BATHS, {"nuclei": 500.0, "area": 400.0}),
         POOL,
     ],
@@ -241,7 +241,7 @@ def test_in_dense_air_the_partial_pressure_is_that_of_saturation(kind, walls, op
     assert abs(ratio / (thinned_by_edges(filled) if kind is Pool else 1.0) - 1.0) <= 4.0 * accuracy
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 def test_over_a_pool_in_dense_air_edges_of_the_floor_make_the_vapour_thinner():
     kind, walls, options = POOL
     open_sides = ((Periodic(),) * 4 + walls[4:], lambda filled: 1.0)
@@ -258,7 +258,7 @@ def test_over_a_pool_in_dense_air_edges_of_the_floor_make_the_vapour_thinner():
 
 @pytest.mark.parametrize(
     ("kind", "samples"),
-    [(Mist, 10_000), *(pytest.param(kind, 25_000, marks=pytest.mark.validate) for kind in (Mist, Pool))],
+    [(Mist, 10_000), *(pytest.param(kind, 25_000, marks=pytest.mark.nightly) for kind in (Mist, Pool))],
 )
 def test_unlike_molecules_that_collide_visit_all_states_alike(wet, kind, samples):
     # in half the unit of time each of them collides

@@ -45,7 +45,7 @@ FEW = {
 }
 
 
-LONG = pytest.param("mountains", marks=pytest.mark.validate)
+LONG = pytest.param("mountains", marks=pytest.mark.nightly)
 """A run of the mountains takes two seconds; its balances are checked in the runs with rain or saved molecules."""
 
 
@@ -111,7 +111,7 @@ def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     [
         (50.0, True),
         (120.0, True),
-        *(pytest.param(*case, marks=pytest.mark.validate) for case in ((0.0, False), (100.0, True))),
+        *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((0.0, False), (100.0, True))),
     ],
 )
 def test_vapour_condenses_until_its_pressure_is_that_of_saturation_or_it_is_used_up(humidity, liquid):
@@ -171,7 +171,7 @@ def test_neither_a_tenth_less_water_nor_a_pseudo_adiabat_is_within_what_is_allow
     assert allowed[2] < 0.85 * (right - pseudo)[2]
 
 
-@pytest.mark.validate
+@pytest.mark.nightly
 def test_a_run_at_the_default_tells_its_water_and_its_adiabat():
     outcome = runner.execute(runner.prepare("lifting-moist", {"seed": 2}))
     ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
@@ -318,7 +318,7 @@ def over_mountains(**settings):
     return ascent, along_frames(ascent, outside, 96, 8, ideal=True)
 
 
-@pytest.mark.parametrize(("molecules", "keeps"), [(30_000, 1.0), pytest.param(4000, 3.0, marks=pytest.mark.validate)])
+@pytest.mark.parametrize(("molecules", "keeps"), [(30_000, 1.0), pytest.param(4000, 3.0, marks=pytest.mark.nightly)])
 def test_rain_scatters_as_molecules_that_fall_one_by_one_out_of_a_cloud_that_scatters(molecules, keeps):
     ascent, cloud = over_mountains(molecules=molecules, cloud_water=keeps)
     found = walk(cloud)
