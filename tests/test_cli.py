@@ -529,7 +529,8 @@ def test_ctrl_c_while_the_finished_file_is_written_keeps_it(folder, monkeypatch)
 
 @posix
 @pytest.mark.parametrize(
-    ("line", "status", "said"), [("| head -c 1", 0, ""), (">&-", 0, ""), ("> /dev/full", 1, "error: ")]
+    ("line", "status", "said"),
+    [("| head -c 1", 0, ""), (">&-", 0, ""), ("> /dev/full", 1, "error: "), ("--help > /dev/full", 1, "error: ")],
 )
 def test_a_reader_that_has_seen_enough_is_no_error_and_a_full_disk_is_one_sentence(line, status, said):
     options = {"env": {**os.environ, "PYTHONPATH": str(ROOT)}, "stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}

@@ -37,6 +37,7 @@ if _loading:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from atmosbox.cli.application import app  # noqa: E402
+from atmosbox.text.stream import tell  # noqa: E402
 
 __all__ = ["app", "main"]
 
@@ -62,3 +63,7 @@ def main() -> None:
         app(prog_name="atmosbox")
     except KeyboardInterrupt:
         sys.exit(130)
+    except OSError as error:  # typer prints the help by itself
+        sys.stdout = None  # so that the flush when Python exits does not fail again
+        tell(f"error: The help cannot be written to stdout: {error.strerror}.")
+        sys.exit(1)
