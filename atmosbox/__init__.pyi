@@ -19,6 +19,7 @@ __all__ = ["__version__", "compare", "open", "plot", "run", "scenes", "show", "s
 def run(
     scene: Literal["temperature"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -48,6 +49,7 @@ def run(
 def run(
     scene: Literal["temperature-large"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -77,6 +79,7 @@ def run(
 def run(
     scene: Literal["elastic-collisions"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -106,6 +109,7 @@ def run(
 def run(
     scene: Literal["diffusion"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -137,6 +141,7 @@ def run(
 def run(
     scene: Literal["atmosphere"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -176,6 +181,7 @@ def run(
 def run(
     scene: Literal["lifting-dry"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -209,6 +215,7 @@ def run(
 def run(
     scene: Literal["convection"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -254,6 +261,7 @@ def run(
 def run(
     scene: Literal["evaporation"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -285,6 +293,7 @@ def run(
 def run(
     scene: Literal["condensation"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -318,6 +327,7 @@ def run(
 def run(
     scene: Literal["nuclei"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -357,6 +367,7 @@ def run(
 def run(
     scene: Literal["lifting-moist"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -396,6 +407,7 @@ def run(
 def run(
     scene: Literal["lifting-sounding"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -429,6 +441,7 @@ def run(
 def run(
     scene: Literal["mountains"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -472,6 +485,7 @@ def run(
 def run(
     scene: Literal["attraction"],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
@@ -509,6 +523,7 @@ def run(
 def run(
     scene: str | os.PathLike[str],
     *,
+    replay: str | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,

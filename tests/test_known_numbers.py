@@ -61,7 +61,7 @@ def of_known_path(*instruments, samples=4, frames=3, duration=12.0):
         place, [[0.0, 0.0, SPEED]] * 2, length=(4.0, 4.0, HIGH), gravity=GRAVITY, walls=(Specular(),) * 6
     )
     setup = Setup(parcel, SCALE, duration, frames, instruments, samples=samples)
-    recording = Recording(SimpleNamespace(save_molecules=False), setup, {})
+    recording = Recording(SimpleNamespace(save_molecules=False, replay=None), setup, {})
     for _ in range(frames):
         recording.advance(lambda now: None)
     ends = np.linspace(0.0, duration, frames + 1)
@@ -100,6 +100,7 @@ def page_and_python():
     prepared = prepare("atmosphere", {"molecules": 50, "duration": 2, "start": "equilibrium"}, engine="exact")
     box, setup = lab_box(prepared), build(prepared)
     call = kernels(box.modes)
+    assert call["start"](box.gas, box.ascent, box.book, box.start, prepared.settings.seed) == 0
     call["place"](box.gas, box.book, box.layout)
     call["begin"](box.gas, box.ascent, box.book, box.gauges)
     recording, (air,) = Recording(prepared, setup, {}), (each for each in setup.instruments if isinstance(each, Air))
@@ -130,7 +131,8 @@ def test_a_knob_of_a_page_sets_the_temperature_that_it_shows():
     told = lab_plan(prepared)[0]["knobs"]["temperature"]
     scale = build(prepared).scale
     for celsius in (-50.0, 25.0, 300.0):
-        assert told["factor"] * celsius + told["offset"] == pytest.approx((celsius + 273.15) / scale.temperature)
+        warm = celsius * told["up"] / told["down"] + told["offset"]
+        assert warm * told["times"] / told["over"] == pytest.approx((celsius + 273.15) / scale.temperature)
 
 
 def test_a_page_draws_the_random_numbers_of_its_seed():

@@ -32,7 +32,7 @@ def test_samples_lie_evenly_in_a_frame_and_the_last_at_its_end(frames, samples):
     parcel = ParcelSet(position, [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], length=(8.0, 8.0, 8.0), walls=walls)
     tracker = Tracker()
     setup = Setup(parcel, Scale(1.0, 1.0, 1.0), 7.2, frames, (tracker,), samples=samples)
-    recording = Recording(SimpleNamespace(save_molecules=False), setup, {})
+    recording = Recording(SimpleNamespace(save_molecules=False, replay=None), setup, {})
     for _ in range(frames):
         recording.advance(lambda now: None)
     expected = 0.1 + 7.2 * np.arange(1, frames * samples + 1) / (frames * samples)

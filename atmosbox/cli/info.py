@@ -8,7 +8,7 @@ from typing import Annotated
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, SceneName, Verbose
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, width
-from atmosbox.text.table import story, table
+from atmosbox.text.table import story, table, wrapped
 
 
 @command("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json")
@@ -27,7 +27,7 @@ def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbo
         return
     columns = width()
     lines = [
-        f"{card.scene}: {card.title}",
+        *wrapped(f"{card.scene}: {card.title}", columns),
         "",
         *story(card.story, columns),
         "",

@@ -352,7 +352,7 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
 def _end(setup: Setup) -> float:
     """Return the last moment of the planned ascent."""
     parcel: Any = setup.parcel
-    return float(parcel._driver.course.end)
+    return float(parcel.driver.course.end)
 
 
 def _command(prepared: Prepared) -> str:

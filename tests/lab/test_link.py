@@ -206,10 +206,13 @@ def test_all_scenes_come_with_an_index_in_the_order_of_teaching(usual_tab, tmp_p
     ended = typed("lab", "--all", "--out", tmp_path / "labs", "--quiet")
     assert (ended.exit_code, ended.stdout.strip()) == (0, str(tmp_path / "labs" / "index.html"))
     usual_tab.goto((tmp_path / "labs" / "index.html").as_uri())
-    assert usual_tab.locator("h2").all_inner_texts() == ["Temperature", "Elastic collisions"]
+    assert usual_tab.locator("h2").all_inner_texts() == [
+        "What is temperature?",
+        "Do light or heavy discs have more energy?",
+    ]
     assert usual_tab.evaluate("[...document.images].map((each) => each.naturalWidth)") == [480, 480]
     assert usual_tab.locator("small").first.inner_text() == "school · 10 minutes"
-    usual_tab.click("text=Elastic collisions")
+    usual_tab.click("text=Do light or heavy discs")
     usual_tab.wait_for_selector("body[data-ready]")
     ended = typed("lab", "--all", "--out", tmp_path / "labs")
     assert (ended.exit_code, "exists already: add --force" in ended.stderr) == (2, True)

@@ -14,7 +14,6 @@ from atmosbox.scene.units import Scale
 __all__ = ["Speeds"]
 
 Array = NDArray[np.float64]
-_BLOCKS = 20
 
 
 class Speeds:
@@ -24,9 +23,12 @@ class Speeds:
     ----------
     edges : (bin + 1,)
         Bounds of the bins [reduced velocity].
+    blocks
+        Number of blocks of frames from which the standard errors are read; fewer where molecules collide rarely.
     """
 
-    def __init__(self, edges: Array) -> None:
+    def __init__(self, edges: Array, blocks: int = 20) -> None:
+        self.blocks = blocks
         self.edges = np.asarray(edges, np.float64)
         self._counts = np.zeros(self.edges.size - 1)
         self._seen = 0
@@ -48,13 +50,13 @@ class Speeds:
         self._seen, self._sum = 0, 0.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the mean speeds, and the histogram with the standard errors of 20 blocks."""
+        """Return the mean speeds, and the histogram with its standard errors."""
         edges = self.edges * scale.velocity
         out = Readings(speed=0.5 * (edges[1:] + edges[:-1]), speed_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
         out["mean_molecular_speed"] = np.array(self._mean) * scale.velocity
         frames = np.array(self._frames[settle:])
         if len(frames) >= 2:
-            mean, error = block_average(frames, min(_BLOCKS, len(frames)))
+            mean, error = block_average(frames, min(self.blocks, len(frames)))
             out["speed_probability_density"] = mean / scale.velocity
             out["speed_probability_density_se"] = error / scale.velocity
         return out
