@@ -127,13 +127,14 @@ def test_every_curve_of_every_profile_shows_the_numbers_of_its_variables(runs, d
                     [SHOWN_IN[unit][0] * run[each].values + SHOWN_IN[unit][1] for each, unit in told]
                 )
                 drawn = [each.get_xydata()[np.isfinite(each.get_xydata()).all(axis=1)] for each in axes.lines]
+                drawn += [each[1:] for each in drawn if panel.start]  # the first point is the start of the run
                 assert any(
                     len(each) > len(wanted) / 3  # a temperature that is hardly known is left out
                     and np.isclose(each[:, None], wanted[None], rtol=1e-6).all(axis=2).any(axis=1).all()
                     for each in drawn
                 ), (name, panel.title, line.label)
                 found += 1
-    assert found == 12
+    assert found == 8
 
 
 def test_a_band_and_a_bar_are_one_standard_error_wide(runs, drawings):
@@ -185,8 +186,12 @@ def test_every_axis_has_a_label_with_its_unit_and_two_numbers_or_more(drawings):
                 assert axis is axes.xaxis, "only an axis of time has its label below the panel beneath"
 
 
-def test_pressure_falls_upward_on_a_logarithmic_axis_with_plain_numbers(drawings):
-    axes = drawings["lifting-dry", "notes"].axes[1]
+def test_pressure_falls_upward_on_a_logarithmic_axis_with_plain_numbers(runs):
+    air = Line("parcel_temperature", "parcel_pressure", "air")
+    panel = Panel("profile", "Air", (air,), x_unit="degC", y_unit="hPa", y_scale="log", y_invert=True)
+    drawing = plot.figure(runs["lifting-dry"].assign_attrs(atmosbox_panels=to_json([panel])))
+    drawing.draw_without_rendering()
+    (axes,) = drawing.axes
     assert axes.get_yscale() == "log"
     low, high = axes.get_ylim()
     assert low > 1000.0 > 300.0 > high
@@ -207,7 +212,7 @@ def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so():
 def test_curves_differ_by_more_than_their_colour(drawings):
     for axes in (axes for drawing in drawings.values() for axes in drawing.axes):
         looks = [
-            (line.get_marker(), str(line._unscaled_dash_pattern)) for line in axes.lines if len(line.get_xdata()) > 1
+            (line.get_marker(), str(line._unscaled_dash_pattern)) for line in axes.lines if len(line.get_xdata()) > 2
         ]
         assert len(set(looks)) == len(looks)
 
@@ -429,7 +434,7 @@ def test_the_numbers_of_a_run_and_where_they_come_from_stand_below_its_figure(ru
     said = " ".join(text.get_text() for text in drawings["lifting-dry", "slides"].texts).replace("\n", " ")
     value = float(runs["lifting-dry"].temperature_at_700_hpa) - 273.15
     assert f"{abs(value):.1f}" in said
-    assert "difference" in said
+    assert "agrees" in said
     assert "lifting-dry · 60 molecules · seed 1 · exact engine" in said
     assert caption.footer(runs["atmosphere"].assign_attrs(atmosbox_status="interrupted")).endswith("interrupted run")
     assert " · 20 discs · " in caption.footer(runs["elastic-collisions"])
