@@ -84,6 +84,12 @@ def test_all_that_scenes_say_on_a_page_is_translated(language):
     assert said_by_scenes() - set(table) == set()
 
 
+def test_terms_are_explained_that_a_graph_has_and_in_every_language():
+    explained = {language: set(words(language)["gloss"]) for language in LANGUAGES[1:]}
+    assert explained["en"] <= said_by_scenes()
+    assert explained["de"] == explained["es"] == explained["en"]
+
+
 def test_a_reader_gets_the_language_that_was_asked_for_or_that_of_the_browser(browser, site, run, tmp_path):
     from atmosbox.page import save
 
