@@ -430,7 +430,8 @@ class Box {
   // The text after # in an address that replays this run; null if it has become too long.
   link() {
     const next = this.frame + (this.inside ? 1 : 0), { pending } = this;
-    const turned = [...this.turned, ...Array.from(pending, ([name, value]) => ({ frame: next, name, value }))];
+    const due = this.coming.filter(({ frame }) => frame <= this.frame); // of another link, before the next frame
+    const turned = [...this.turned, ...due, ...Array.from(pending, ([name, value]) => ({ frame: next, name, value }))];
     if (turned.length > MOST_TURNS || this.frame > LONGEST) return null;
     const turns = turned.map(({ frame, name, value }) => `${frame}:${name}:${value ?? "start"}`).join();
     return `#${this.plan.link}&seed=${this.seed}${turns && "&turns="}${turns}&frames=${this.frame}&end`;
