@@ -183,7 +183,7 @@ def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(scenarios.load("lifting-dry"), "ladder", QUICK, raising=False)
     monkeypatch.setattr(repetition, "MOST_RUNS", 2)
-    done = CliRunner().invoke(app, ["tradeoff", "lifting-dry", "--budget", "5s", "--json"])
+    done = CliRunner().invoke(app, ["tradeoff", "lifting-dry", "--budget", "60s", "--json"])
     assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)
     assert said["files"] == ["lifting-dry-tradeoff.nc", "lifting-dry-tradeoff.csv", "lifting-dry-tradeoff.png"]

@@ -91,9 +91,10 @@ def measure(
 
     Examples
     --------
-    >>> found = measure("elastic-collisions", ways=[Way("exact", {"duration": 5})], budget=1.0)
-    >>> bool(found.members[0] > 0), bool(found.ledger[0] < 1e-10)
-    (True, True)
+    >>> measure("lifting-dry", budget=0.0)
+    Traceback (most recent call last):
+    ...
+    atmosbox.errors.SettingError: budget = 0 s is not between 1 s and 1000000 s: give budget="40s".
     """
     module = scenarios.load(scene)
     series = getattr(module, "ladder", ())
