@@ -16,9 +16,10 @@ from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
+from atmosbox.simulation.link import read_link
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
-from atmosbox.simulation.replay import check_nothing_changes, read_link, replayed
+from atmosbox.simulation.replay import check_nothing_changes, replayed
 from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, from_file, put_back, read_state, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
