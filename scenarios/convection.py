@@ -71,6 +71,11 @@ SETTLE = 80
 """Number of frames left out of the means: until the air turns over steadily."""
 LEAST = 40
 """Least number of frames for a headline."""
+BLOCKS = 5
+"""Number of blocks from which the errors of lapse rate and heat are read: each is longer than the slowest fluctuation.
+
+Over 60 seeds of stable air the values scatter by .96 and .80 of these errors; with 20 blocks, by 1.48 and .69.
+"""
 HEIGHTS = 6.0
 """Greatest height of the box, in scale heights half-way between the temperatures of floor and ceiling."""
 LOWEST = 4.0, 1.5
@@ -450,13 +455,13 @@ def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> 
     The lapse rate of air at rest has no theory good enough: below the cold ceiling mean free paths are so long that
     Fourier's law does not hold.
     """
-    steep = overlapping_average(late.core_lapse_rate.values)
+    steep = overlapping_average(late.core_lapse_rate.values, BLOCKS)
     lapse = Headline.of_mean("mean_core_lapse_rate", "lapse rate of the core", steep, None, "K m-1", "K/km")
     if not rest.heat:
         return (lapse,)
     heat = np.diff(late.heat_from_wall.values, axis=0) / np.diff(late.elapsed_time.values)[:, None]
     unit = rest.heat * box.width * box.scale.total_energy / box.scale.time
-    passed = overlapping_average(0.5 * (heat[:, 4] - heat[:, 5]) / unit, min(20, len(heat) // 2))
+    passed = overlapping_average(0.5 * (heat[:, 4] - heat[:, 5]) / unit, BLOCKS)
     label, known = "heat, over that conducted at rest (Nusselt number)", 1.0 if still and box.usual else None
     return lapse, Headline.of_mean("nusselt_number", label, passed, known, "1")
 

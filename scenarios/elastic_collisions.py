@@ -44,6 +44,8 @@ level = "school"
 minutes = 10
 FRAMES = 1200
 SETTLE = 400
+BLOCKS = 5
+"""Number of blocks for the errors of the speeds: each is longer than the time in which discs share their energy."""
 
 ladder = (
     Series("exact", "duration", (15, 60, 240)),
@@ -91,7 +93,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         scale,
         si.duration / scale.time,
         FRAMES,
-        (Air(), Discs(), Speeds(np.linspace(0.0, 5.0, 51), blocks=5)),
+        (Air(), Discs(), Speeds(np.linspace(0.0, 5.0, 51), blocks=BLOCKS)),
         settle=SETTLE,
         time_unit="s",
         facts={

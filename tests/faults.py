@@ -4,7 +4,7 @@
 if one survives, or if the list does not fit the code. ``--list`` prints what each of them is.
 
 The faults are of the kind that a person makes: a factor, a sign, a wall, a frame, a unit. A test that is shortened must
-still catch those that name it. One edit of the engine compiles its kernels anew, so each names a small test.
+still catch those that name it. One edit of the engine compiles its kernels again, so each names a small test.
 """
 
 import os

@@ -147,6 +147,17 @@ def test_rolls_of_sixty_seeds_grow_as_linear_theory_says_within_their_errors():
     assert -0.09 - 4.0 * stats.sem(ratio) < ratio.mean() - 1.0 < 4.0 * stats.sem(ratio)  # grown rolls are slower
 
 
+@pytest.mark.nightly
+def test_the_errors_of_lapse_rate_and_heat_in_stable_air_are_the_scatter_of_sixty_seeds():
+    """Of one processor it takes a minute."""
+    runs = [ran(case="stable", molecules=6000, duration=500.0, seed=seed) for seed in range(1, 61)]
+    for name in ("mean_core_lapse_rate", "nusselt_number"):
+        found = [number(outcome, name) for outcome in runs]
+        scatter = np.var([each.value for each in found], ddof=1)
+        stated = np.mean([each.standard_error**2 for each in found])
+        assert stats.chi2.ppf(0.0005, 59) < 59 * scatter / stated < stats.chi2.ppf(0.9995, 59), name
+
+
 def test_an_accuracy_is_refused_with_its_reason():
     with pytest.raises(AtmosboxError, match="theory knows only the weight of the air"):
         runner.prepare("convection", {}, accuracy="sketch")

@@ -2,7 +2,7 @@
 
 `.ci/run` fails if there is a stale job, but the tests do not: all jobs together take a quarter of an hour, and most
 edits of the engine do not change what they find. The list itself must be right, and that is tested here. Jobs that take
-seconds are run anew by tests/test_docs.py.
+seconds are run again by tests/test_docs.py.
 """
 
 import importlib.util

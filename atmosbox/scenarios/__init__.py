@@ -133,7 +133,7 @@ def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
     name_or_path
         A name from `names`, such as ``"lifting-dry"`` (``"lifting_dry"`` is the same), or the path of a
         Python file: anything that ends in ``.py`` or contains a separator, such as ``"./my_scene.py"``. The
-        file is run anew at each call; like every Python program, it can run any code.
+        file is run again at each call; like every Python program, it can run any code.
 
     Returns
     -------

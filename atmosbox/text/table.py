@@ -93,7 +93,7 @@ def wrapped(text: str, width: int, indent: str = "") -> list[str]:
 
 
 def story(text: str, width: int) -> list[str]:
-    r"""Return a docstring for a terminal: paragraphs are wrapped anew, indented lines stay as they are.
+    r"""Return a docstring for a terminal: paragraphs are wrapped again, indented lines stay as they are.
 
     The backquotes around code are left out.
 

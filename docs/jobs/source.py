@@ -7,7 +7,7 @@ be split, and no number becomes stale; but if a constant changes, all numbers do
 A job depends on all rooms of the physics (`PHYSICS`), on each other room that its file imports or that it is named
 after, on the scenarios that it names (on all of them if it names none), and on itself with the functions that stand
 beside it. Parts of the physics that only some runs meet count for those alone (`MET_BY`). Jobs that take a second or
-two need no digest: the tests make their numbers anew each time.
+two need no digest: the tests make their numbers again each time.
 """
 
 import ast

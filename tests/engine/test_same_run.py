@@ -162,7 +162,7 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut_and_looked_at(name
     whole.advance(end)
     assert whole.contacts + whole.wall_hits.sum() > 100
     assert (whole._walls.epoch[0] > 0.0) == (name in FEW)
-    assert whole.ceiling > 18.0 or name not in ("lift", "mist")  # the cells have been laid out anew
+    assert whole.ceiling > 18.0 or name not in ("lift", "mist")  # the cells have been laid out again
     random = np.random.default_rng(6)
     about = (epoch, np.nextafter(epoch, 0.0), np.nextafter(epoch, np.inf), 2.0 * epoch, 0.0, 0.75, 0.75, end, end)
     for times, chunk in ((np.append(random.uniform(0.0, end, 60), end), 200_000), (about, 50)):

@@ -24,13 +24,13 @@ SMALL = {
     "elastic-collisions": ({}, 30),
     "atmosphere": ({"molecules": 3000}, 3),  # its layers are fitted to the molecules at the start, and when they fall
     "convection": ({"molecules": 500}, 64),  # discs are released at the floor after 60 frames
-    "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out anew twice
+    "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out again twice
     "temperature-large": ({"molecules": 300}, 20),
     "diffusion": ({"molecules": 2000}, 8),
     "attraction": ({"molecules": 300, "duration": "0.6 ns"}, 40),  # drops grow, and touch each other
     "evaporation": ({"molecules": 400, "pool": 150}, 60),
     "condensation": ({"molecules": 300, "humidity": 300}, 40),
-    "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out anew too
+    "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out again too
     "lifting-sounding": ({"molecules": 300, "ascent": 40}, 80),
     "mountains": ({"molecules": 400, "travel": 60}, 96),  # up and down again, and it rains
     "nuclei": ({}, 6),

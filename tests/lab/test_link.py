@@ -245,7 +245,7 @@ def test_a_page_opens_the_links_of_its_starts_and_refuses_others_in_a_sentence(l
         shown.ask(type="frames", value=20)
         link, state = link_of(shown), shown.digest()
         assert end_of(link, least=5) == state
-        shown.page.goto(shown.page.url.partition("#")[0] + link)  # which opens the page anew
+        shown.page.goto(shown.page.url.partition("#")[0] + link)  # which opens the page again
         shown.page.wait_for_selector("body[data-ready]")
         shown.ask(type="frames", value=20)
         assert shown.digest() == state

@@ -13,7 +13,7 @@ def conduction_of_rotating_spheres(number, rng, parts=20):
     r"""Return the factor by which rotation increases the heat conductivity of spheres, and its standard error.
 
     Pairs of mass 1 and kT = 1 collide in proportion to relative speed; with Larsen and Borgnakke's exchange at every
-    contact their energy is divided anew as Gamma(2) : Gamma(1) : Gamma(1). The brackets are
+    contact their energy is divided again as Gamma(2) : Gamma(1) : Gamma(1). The brackets are
     :math:`B_{ij} = \tfrac14 \langle g\,\Delta A_i \cdot \Delta A_j \rangle / 3`, and the conductivity goes as
     :math:`b \cdot B^{-1} b` for b = (5/2, 1).
     """

@@ -21,7 +21,7 @@ def time(page):
 
 
 def picture(page):
-    """Return the picture of the box, after it has been drawn anew."""
+    """Return the picture of the box, after it has been drawn again."""
     page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page.locator(".box canvas").first.screenshot()
 

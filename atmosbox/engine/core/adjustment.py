@@ -14,7 +14,7 @@ __all__ = ["Adjustable"]
 class Adjustable(Account):
     """A box whose piston, heat baths and gravity may be changed between two advances; `Parcel` is one.
 
-    Events that were predicted for the old walls or the old gravity are predicted anew, and the energy that a change
+    Events that were predicted for the old walls or the old gravity are predicted again, and the energy that a change
     gives to the molecules is entered in the ledger. A box that is not changed gives the same bytes as one that cannot
     be changed.
     """

@@ -64,7 +64,7 @@ def source_digest(folder: Path | None = None, memory: Path | None = None) -> str
     folder
         The folder of the sources, by default the engine's.
     memory
-        A folder where the digests of earlier sources are kept: parsing all sources anew takes a tenth of a second.
+        A folder where the digests of earlier sources are kept: parsing all sources again takes a tenth of a second.
     """
     from importlib.metadata import version as version_of
 

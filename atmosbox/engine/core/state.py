@@ -57,7 +57,7 @@ EVENT = np.dtype(
 
 The time of its next contact [time], the partner, and how many encounters the partner had had when that contact was
 predicted (if it has had more since, the prediction is stale); its slots along the three axes (`cells`); and which of
-contact, crossing or wall hit comes first. A contact with itself means that its events are predicted anew at that time.
+contact, crossing or wall hit comes first. A contact with itself means that its events are predicted again at that time.
 The last eight bytes, which have no name here, are its places in the rows of its cells (`rows`).
 """
 

@@ -266,7 +266,7 @@ class DsmcParcel(MarchingParcel):
             column = getattr(self._columns, name)
             self._gather(column[: self._number], order, self._spare, self._workers)
             changed[name], self._spare = self._spare, column
-        # every step writes the column of cells anew
+        # every step writes the column of cells again
         self._gather(self._columns.identity[: self._number], order, self._columns.cell, self._workers)
         self._columns = self._columns._replace(identity=self._columns.cell, cell=self._columns.identity, **changed)
         usual = _FASTEST * self._thermal_speed()

@@ -3,7 +3,7 @@ r"""The events of liquid in a step among many molecules; and the events of a mis
 All molecules have flown, and those that came to a pool wait on it. Then the events of the liquid are computed *one by
 one* in the order of their times within the step: a molecule meets it, one leaves it, one rains out. If all molecules
 that meet it were treated first, in the order of the list, many would condense before one could leave, and the liquid
-would be too warm. Each clock is a Poisson process, so it has no memory and its time may be drawn anew whenever the
+would be too warm. Each clock is a Poisson process, so it has no memory and its time may be drawn again whenever the
 liquid has changed.
 
 In an ideal gas a molecule of speed w relative to the air meets the **mist** at the rate :math:`A w / 4 V`. The time is

@@ -111,7 +111,7 @@ def proceed(gas, until, most, modes):
         _fetch_ahead(gas)
         event = gas.events[i]
         what = np.int64(event.what)
-        # fly the molecule from its own clock to the event: nobody else moves
+        # fly the molecule from its own clock to the event: no other molecule moves
         at = motion_at(i, t, gas, modes)
         j = -1
         other = at

@@ -322,7 +322,7 @@ class ParcelSet(Parcel):
         self._cells = old._replace(row=row, stride=stride)
 
     def _refill_rows(self, now: float) -> None:
-        """Write the copies in all rows anew at a local time; make the rows longer or lay out other cells if needed."""
+        """Write the copies in all rows again at a local time; make the rows longer or lay out other cells if needed."""
         while self._refill(self._gas(), now):
             if not self._enlarge_rows():
                 return self._lay_out_closer()
@@ -360,7 +360,7 @@ class ParcelSet(Parcel):
         self._enter(self._choose(edge[: found + 1] if found else None))
 
     def _lay_out(self) -> None:
-        """Choose cells for the box as it is now and predict all events anew."""
+        """Choose cells for the box as it is now and predict all events again."""
         self._enter(self._choose())
 
     def _choose(self, layers: Array | None = None) -> Grid:

@@ -284,7 +284,7 @@ def write_copy(i, bit, start, path, centre, radius, copies, modes):
 
 @kernel
 def fill(now, gas, modes):
-    """Begin an epoch: write the copies of all molecules anew; return whether a row is too short for its members."""
+    """Begin an epoch: write the copies of all molecules again; return whether a row is too short for its members."""
     cells, copies, molecules = gas.cells, gas.cells.copies, gas.molecules
     for cell in range(cells.number_x * cells.number_y * cells.number_z):
         copies.occupied[((cell * cells.stride) & POSITIVE) >> 1] = 0

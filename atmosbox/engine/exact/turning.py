@@ -1,7 +1,7 @@
 """The piston of a parcel that follows a pressure gets new velocities between events, inside compiled code.
 
 A parcel on its ascent sets the velocity of its piston thousands of times. What the law of `lift` needs to know of the
-gas is computed from the tallies here, and the next move of all molecules that may meet the ceiling is predicted anew.
+gas is computed from the tallies here, and the next move of all molecules that may meet the ceiling is predicted again.
 """
 
 import math
@@ -20,7 +20,7 @@ from atmosbox.engine.exact.search import CONTACT
 __all__ = ["HIGHEST", "LOWEST", "Ascent", "Next", "ahead", "gauges", "replan_under", "turn"]
 
 LOWEST, HIGHEST = 0.6, 1.5
-"""Lowest and highest ceiling, relative to its height when the cells were laid out; beyond, they are laid out anew."""
+"""Lowest and highest ceiling, relative to its height when the cells were laid out; beyond, they are laid out again."""
 
 
 class Ascent(NamedTuple):
@@ -98,7 +98,7 @@ def gauges(t, number, freedom, condensed, gas, ascent):
 
 @kernel
 def replan_under(lowest, now, gas, modes):
-    """Predict anew, at time ``now``, the next moves of all molecules that may meet the ceiling, or were to meet it.
+    """Predict again, at time ``now``, the next moves of all molecules that may meet the ceiling, or were to meet it.
 
     A molecule whose slot ends below ``lowest``, the lowest height of the ceiling until it is set again, is skipped.
     """

@@ -1,7 +1,7 @@
 """The loop over events of moist air: events of the liquid happen between the events of molecules.
 
 Beside the calendar of the molecules there are three clocks: when a molecule may meet the mist, when one leaves the
-liquid, and when one rains out. Each is a Poisson process, so it has no memory and its time may be drawn anew whenever
+liquid, and when one rains out. Each is a Poisson process, so it has no memory and its time may be drawn again whenever
 the liquid has changed. A molecule of speed w relative to the air meets the mist at the rate A w Z / 4 V. Z is the
 compressibility factor: molecules are denser by this factor at any surface, as at a wall. The time is drawn for the
 largest speed of all, and a meeting is accepted with a probability proportional to the speed of its molecule.
@@ -247,7 +247,7 @@ def _gauges(t, gas, reservoir, ascent):
 
 @kernel
 def _wake(t, gas, reservoir, modes):
-    """Draw the times of the liquid anew at time t if the piston may make molecules faster than was assumed for them."""
+    """Draw the times of the liquid again at time t if the piston may make molecules faster than was assumed."""
     speed = 2.0 * abs(gas.walls.piston[1])
     if speed > reservoir.bound[0]:
         reservoir.bound[0] = speed

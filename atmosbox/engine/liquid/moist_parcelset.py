@@ -63,7 +63,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         self._draw(max(fastest, warm, 2.0 * abs(self.piston_velocity)))
 
     def _draw(self, speed: float) -> None:
-        """Draw the times of the liquid anew, for molecules that may be as fast as ``speed`` [length/time]."""
+        """Draw the times of the liquid again, for molecules that may be as fast as ``speed`` [length/time]."""
         self._moist_begin(self._gas(), self._reservoir, self._now, speed)
 
     def _reservoir_changes(self) -> None:
@@ -77,7 +77,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         self._wake(math.sqrt(8.0 * kT / self._liquid.substance.mass))
 
     def _wake(self, speed: float) -> None:
-        """Draw the times of the liquid anew if molecules may now become faster than was assumed for them."""
+        """Draw the times of the liquid again if molecules may now become faster than was assumed for them."""
         if speed > float(self._reservoir.bound[0]):
             self._draw(speed)
 

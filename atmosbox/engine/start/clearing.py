@@ -55,7 +55,7 @@ def clear(place, centre, reach, side, state):
 
 
 def clear_of_drops(position: Array, centre: ArrayLike, reach: ArrayLike, side: float, rng: RandomNumbers) -> Array:
-    """Return positions of molecules of diameter 1 between walls; those within reach of a drop are drawn anew.
+    """Return positions of molecules of diameter 1 between walls; those within reach of a drop are drawn again.
 
     Parameters
     ----------

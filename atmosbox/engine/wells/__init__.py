@@ -1,6 +1,6 @@
 """Molecules that attract each other, with a square well around each; event-driven. Read from top to bottom.
 
-`attraction`           range and depth of the wells for each pair of species; a bath that draws velocities anew
+`attraction`           range and depth of the wells for each pair of species; a bath that draws velocities again
 `vicinity`             lists of the neighbours that a molecule can meet soon, and of those in its well
 `well_events`          captures, releases, and the loop over events
 `attracting_parcelset` the box of such molecules, advanced exactly

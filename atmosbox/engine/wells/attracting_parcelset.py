@@ -39,7 +39,7 @@ class AttractingParcelSet(ParcelSet):
     strength
         Factor of the depth of all wells; it may be changed during the run.
     bath
-        A heat bath that draws velocities anew, or none.
+        A heat bath that draws velocities again, or none.
 
     Raises
     ------
@@ -126,7 +126,7 @@ class AttractingParcelSet(ParcelSet):
         self._wells.depth[:] *= self._strength
 
     def _lay_out(self) -> None:
-        """Make the lists of all molecules, and predict all events anew."""
+        """Make the lists of all molecules, and predict all events again."""
         n = len(self._fields)
         self._filled = self.ceiling
         reach = float(self._wells.distance.max(initial=0.0))
@@ -213,7 +213,7 @@ class AttractingParcelSet(ParcelSet):
 
     @property
     def well_events(self) -> dict[str, int]:
-        """Numbers of captures, releases, bounces in a well, and velocities drawn anew since the start."""
+        """Numbers of captures, releases, bounces in a well, and velocities drawn again since the start."""
         names = ("captures", "releases", "bounces", "drawn")
         return {name: int(count) for name, count in zip(names, self._wells.count, strict=True)}
 

@@ -29,7 +29,7 @@ _KINDS = {"contact": CORE, "capture": CAPTURE, "release": RELEASE}
 class AttractingReference(Reference):
     """A box of a few molecules that attract each other.
 
-    Its additional kinds of events are "capture", "release" and "drawn": the bath draws a velocity anew.
+    Its additional kinds of events are "capture", "release" and "drawn": the bath draws a velocity again.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ class SquareWell:
 
 @dataclass(frozen=True)
 class RandomBath:
-    """A heat bath without walls: at random times it draws the velocity of a molecule anew.
+    """A heat bath without walls: at random times it draws the velocity of a molecule again.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Wells(NamedTuple):
 
     ``core``, ``edge`` and ``depth : (kind, kind)``: see `square_well.Well`; ``distance : (kind, kind)`` is the radius
     [length]. ``number : (kind, kind)``: the pairs of a lower and a higher kind that are inside their wells now.
-    ``count : (4,)`` captures, releases, bounces, velocities drawn anew by the bath; ``stress : (axis,)`` sums of
+    ``count : (4,)`` captures, releases, bounces, velocities drawn again by the bath; ``stress : (axis,)`` sums of
     r_a dp_a over all events of pairs since the start [energy].
     """
 

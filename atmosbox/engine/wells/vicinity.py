@@ -6,7 +6,7 @@ are within their shells, two molecules whose anchors are farther apart than
 .. math:: \lambda\sigma + s_i + s_j
 
 cannot reach the edge of each other's well. So the list of a molecule holds those that are nearer, and it searches for
-contacts among them alone. When a molecule leaves its shell, its list is made anew; the lists of the others are changed
+contacts among them alone. When a molecule leaves its shell, its list is made again; the lists of the others are changed
 with it, so that either both molecules of a pair list each other or neither does. A shell is narrow where molecules are
 crowded, and wide in a thin gas::
 
@@ -322,7 +322,7 @@ def bring_back(i, at, gas):
 
 @kernel
 def renew(i, at, fresh, gas, modes):
-    """Make the list of molecule i, whose `Motion` is ``at``, and its shell anew.
+    """Make the list of molecule i, whose `Motion` is ``at``, and its shell again.
 
     Parameters
     ----------

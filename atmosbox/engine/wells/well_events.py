@@ -1,7 +1,7 @@
 """The loop over events for molecules that attract each other.
 
 Every molecule has one event, as in `exact`: the next core or edge that it reaches with a neighbour, the end of its
-shell, or a wall, whichever comes first. In addition the bath draws velocities anew at times of its own.
+shell, or a wall, whichever comes first. In addition the bath draws velocities again at times of its own.
 """
 
 import functools
@@ -145,7 +145,7 @@ def _meet(i, j, t, at, which, gas, modes):
 
 @kernel
 def _draw_anew(t, gas, modes):
-    """Draw the velocity of a random molecule anew at time t; return its number, and its `Motion` after it."""
+    """Draw the velocity of a random molecule again at time t; return its number, and its `Motion` after it."""
     bath, state = gas.bath, gas.tallies.random
     number = gas.molecules.size
     i = min(int(uniform(state) * number), number - 1)
@@ -227,7 +227,7 @@ def proceed(gas, until, most, modes):
                     stale += 1 if j != i else 0
                     j = -1
         done += 1
-        # the events of both are predicted anew; in one loop, so that the code is compiled once
+        # the events of both are predicted again; in one loop, so that the code is compiled once
         m = i
         while True:
             _plan(m, t, at, gas, modes)
@@ -284,7 +284,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def replan(gas, now):
-        """Have the events of all molecules predicted anew at time ``now``."""
+        """Have the events of all molecules predicted again at time ``now``."""
         for i in range(gas.molecules.size):
             call(i, now, gas)
 

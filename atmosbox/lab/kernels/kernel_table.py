@@ -49,7 +49,7 @@ def lead(gas, ascent, book, towards):
 
 @kernel
 def begin_averages_anew(speeds, layers):
-    """Begin the averages of many frames anew."""
+    """Begin the averages of many frames again."""
     forget(speeds)
     forget(layers)
     return 0

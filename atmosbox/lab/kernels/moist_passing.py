@@ -50,7 +50,7 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def draw(gas, book, speed):
-            """Draw the time at which the next molecule leaves a drop anew."""
+            """Draw the time at which the next molecule leaves a drop again."""
             drop_begin(gas, book.moisture.drops, book.moisture.reservoir, book.now[0])
 
     else:
@@ -74,12 +74,12 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def draw(gas, book, speed):
-            """Draw the next event of the liquid anew, for molecules with speeds up to `speed` [length/time]."""
+            """Draw the next event of the liquid again, for molecules with speeds up to `speed` [length/time]."""
             moist_begin(gas, book.moisture.reservoir, book.now[0], speed)
 
     @kernel
     def wake(gas, book, speed):
-        """Draw the next event of the liquid anew if molecules may now become faster than the bound that was used."""
+        """Draw the next event of the liquid again if molecules may now become faster than the bound that was used."""
         if speed > book.moisture.reservoir.bound[0]:
             draw(gas, book, speed)
 

@@ -166,7 +166,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def refilled(gas, now, layout):
-        """Write the copies in all rows anew, in longer rows if needed; return whether there was memory for them."""
+        """Write the copies in all rows again, in longer rows if needed; return whether there was memory for them."""
         if modes.rows:
             while refill(_as_laid_out(gas, layout, modes), now):
                 if not _longer_rows(gas, layout, modes):

@@ -31,7 +31,7 @@ export class Sheet {
     matchMedia("(prefers-color-scheme: dark)").onchange = () => this.paint();
     stages.forEach((stage) => stage.parent.addEventListener("pick", ({ detail }) => this.follow(stage, detail)));
     this.#tools();
-    this.follow(null, null); // when a box begins anew, no molecule is followed
+    this.follow(null, null); // when a box begins again, no molecule is followed
   }
 
   #tools() {
