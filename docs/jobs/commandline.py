@@ -14,7 +14,7 @@ SAID = re.compile(r"\s*\[(default: )?([^\]]*)\]$")
 
 OPTION = re.compile(r"(?<![\w`-])--[a-z][\w-]*")
 HEAD = ["argument or option", "what it is", "if it is not given"]
-COMMON = 4
+COMMON = 3
 """An option that says the same in so many commands is explained once."""
 
 
@@ -68,11 +68,10 @@ def reference(found: Findings) -> None:
     common = [row for row, times in often.items() if times >= COMMON]
     found.table(HEAD, common, "common")
     parts = []
-    for name, each, context in every:
-        usage = each.get_usage(context).removeprefix("Usage: ")
+    for name, each, _ in every:
         own = [row for row in rows[name] if row not in common]
         also = ", ".join(row[0] for row in rows[name] if row in common)
-        parts += [f"### {name}", "", "```text", usage, "```", ""]
+        parts += [f"### {name}", ""]
         parts += [line for paragraph in told(each) for line in (paragraph, "")]
         parts += [markdown(HEAD, own), ""] if own else []
         parts += [f"Also: {also}.", "", "```sh", *examples(each), "```", ""]

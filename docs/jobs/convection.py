@@ -70,9 +70,9 @@ def gravities(found: Findings) -> None:
     for gravity in GRAVITIES:
         each, _ = measured(gravity=gravity)
         rows.append([f"{gravity:.3g}", *row(each)])
-        if gravity == 0.0:
-            heat = each["nusselt_number"]
-            found.agree("heat without gravity", heat.value, heat.standard_error, 1.0, 0.05)
+        heat = each["nusselt_number"]
+        if gravity == 0.0 and not abs(heat.value - 1.0) <= heat.chance + 0.05:
+            found.failures.append(f"without gravity {heat.value:.3g} times the heat passes that discs conduct at rest")
     found.table(["gravity [m/s²]", *SHOWN], rows, "rows")
 
 
@@ -96,7 +96,7 @@ def seeds(found: Findings) -> None:
 @job("convection-growth")
 def growth(found: Findings) -> None:
     """Let rolls grow in an ideal gas, and compare the strongest of each run with linear theory."""
-    rows, ratios, apart = [], [], []
+    ratios, apart = [], []
     for seed in GROWN:
         each, _ = measured("dsmc", molecules=100_000, duration=500.0, seed=seed)
         if "growth_rate" not in each:
@@ -104,13 +104,11 @@ def growth(found: Findings) -> None:
         grown = each["growth_rate"]
         if not grown.agrees:
             found.failures.append(f"seed {seed}: rolls grow by {grown.value:.3g}, theory says {grown.theory:.3g}")
-        rows.append([str(seed), grown.label.split()[-3], cell(each, "growth_rate"), rounded(grown.theory or 0.0, 3)])
         ratios.append(grown.value / (grown.theory or 1.0))
         apart.append((grown.value - (grown.theory or 0.0)) / grown.standard_error)
     error = float(np.std(ratios, ddof=1)) / len(ratios) ** 0.5
     found.number("ratio", measurement(float(np.mean(ratios)), error))
     found.number("scatter", rounded(float(np.mean(np.square(apart))) ** 0.5))
-    found.table(["seed", "half waves of the roll", "growth [1/s]", "linear theory [1/s]"], rows)
 
 
 @job("convection-onset")

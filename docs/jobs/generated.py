@@ -49,12 +49,17 @@ def facts(found: Findings) -> None:
 @job("variables", quick=True)
 def variables(found: Findings) -> None:
     """Make the table of everything that a file may hold."""
-    rows = []
+    series, others = [], []
     for name, each in diagnostics.VARIABLES.items():
-        dims = ", ".join(each.dims)
         standard = f"; CF: `{each.standard_name}`" if each.standard_name else ""
-        rows.append([f"`{name}`", dims, f"`{each.units}`" if each.units else "–", each.long_name + standard])
-    found.table(["variable", "dimensions", "unit", "what it is; CF standard name, if there is one"], rows)
+        told = [f"`{each.units}`" if each.units else "–", each.long_name + standard]
+        if each.dims == ("elapsed_time",):
+            series.append([f"`{name}`", *told])
+        else:
+            others.append([f"`{name}`", ", ".join(each.dims), *told])
+    what = "what it is; CF standard name, if there is one"
+    found.table(["variable", "unit", what], series, "series")
+    found.table(["variable", "dimensions", "unit", what], others, "others")
 
 
 ATTRIBUTES = {

@@ -209,7 +209,7 @@ def moist() -> list[list[str]]:
          "reversible one; `rain=on` shows it"],
         ["the weight of the droplets", f"counts in the buoyancy as {rounded(end * liquid)} K, and not in the "
          "temperature"],
-        ["supersaturation in an updraught", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
+        ["supersaturation in an updraft", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
          f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm in a cubic centimetre; here the delay of the "
          f"vapour makes the parcel up to {rounded(float(known.lag.max()))} K too cold"],
         ["an hour for the ascent", f"the parcel is up to {rounded(float(known.rate.max()))} K too warm"],

@@ -12,7 +12,7 @@ from jobs.registry import Findings, job
 import atmosbox
 from atmosbox.page import save
 from atmosbox.plot.compare import compared, naming
-from atmosbox.plot.compare.figure import figure, spoken
+from atmosbox.plot.compare.figure import drawn
 from atmosbox.text.comparison_table import comparison_lines
 
 WIDTH, HEIGHT = 1280, 720
@@ -27,8 +27,7 @@ def warm_and_cold(found: Findings) -> None:
     names = naming(runs, [Path(file).stem for file in files])
     table = "\n".join(comparison_lines(files, names, compared(runs), 100))
     found.text(f"```console\n$ atmosbox compare cold.nc warm.nc\n{table}\n```")
-    labels = [spoken(label) for label in names.labels]
-    found.figure(figure(runs, labels, spoken(f"Lifting dry air: {names.title}")), "compared", 115)
+    found.figure(drawn(runs, names, "notes")[0], "compared", 115)
 
 
 def browser_of(playwright):
