@@ -15,7 +15,7 @@ SAID = re.compile(r"\s*\[(default: )?([^\]]*)\]$")
 OPTION = re.compile(r"(?<![\w`-])--[a-z][\w-]*")
 HEAD = ["argument or option", "what it is", "if it is not given"]
 COMMON = 3
-"""An option that says the same in so many commands is explained once."""
+"""An option that says the same in so many commands is explained once: that which most of them have."""
 
 
 def commands() -> list[tuple[str, Any, Any]]:
@@ -65,7 +65,8 @@ def reference(found: Findings) -> None:
     )
     rows = {name: words(each, context) for name, each, context in every}
     often = Counter(row for each in rows.values() for row in each)
-    common = [row for row, times in often.items() if times >= COMMON]
+    most = {row[0]: row for row, times in reversed(often.most_common()) if times >= COMMON}
+    common = [row for row in often if most.get(row[0]) == row]
     found.table(HEAD, common, "common")
     parts = []
     for name, each, _ in every:
