@@ -161,7 +161,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         FRAMES,
         (Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)),
         facts={
-            "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, its sides open",
+            "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, with periodic sides",
             "real molecules per simulated one": "1",
             "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "gamma": "5/3: the molecules do not rotate",
