@@ -9,7 +9,8 @@ Modelled: hard spheres with a square well of range 1.5, whose diameter and depth
 (or nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. What is seen is therefore
 like argon: its vapour pressure is a third too low at 105 K and a sixth at 142 K, its latent heat an eighth too large
 at 111 K and a fifth at 142 K. It is not water, whose critical temperature is four times as high, mostly because of
-hydrogen bonds, which have directions and which this model lacks. The law of its vapour pressure is of the same shape.
+hydrogen bonds, which have directions and which this model lacks. But its vapour pressure follows a law of the same
+shape.
 
 At the start of the default run there is several times as much vapour as is stable: it is cooled so suddenly that drops
 form everywhere at once, and merge (a quench). A vapour that is barely supersaturated waits for one rare nucleus.

@@ -3,18 +3,18 @@
 Thousands of hard discs fly in a tall box with gravity, in a plane as on a screen. The floor is hot, the ceiling cold.
 At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter, and after
 some minutes it rises in a plume, spreads below the ceiling, cools, and sinks at the sides: two rolls of wind. This is
-not prescribed: there is no parcel, no exchange and no prescribed ascent in this box.
+not prescribed: there is no parcel and no prescribed ascent in this box.
 
-Air that rises expands and cools. It is still warmer than its new environment only if the temperature falls faster with
-height than in air that rises without heat, by the adiabatic lapse rate. Even then viscosity and conduction must be weak
-enough. Once the air turns over, the core cools less with height than it did at rest: it is mixed.
+Air that rises expands and cools, by the adiabatic lapse rate. It is still warmer than its new environment only if the
+temperature there falls faster with height. Even then viscosity and conduction must be weak enough. Once the air turns
+over, the core cools less with height than it did at rest: it is mixed.
 
 With ``case`` the same box shows an inversion (a floor colder than the ceiling: what is released at the floor stays
-there), a sea-breeze (one side warm, the other cold: wind from the first moment on), or stable air (the same contrast
-with more gravity: it stays at rest).
+there), a sea-breeze (one side warm, the other cold: wind from the first moment on), or stable air (the same
+difference of temperature with more gravity: it stays at rest).
 
 Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, one cell deep,
-that may rotate. Floor and ceiling are thermostats, the sides smooth or periodic. Left out: water, radiation, the
+that may rotate. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water, radiation, the
 rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km, because a box only some
 hundred molecules high is so viscous that air under a real lapse rate would stay at rest in it.
 """
@@ -160,6 +160,7 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a weight that would leave hardly any air below the ceiling."""
         si = self.si
+        # the gravity under which the box is one scale height high
         light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
         most = math.floor(100.0 * HEIGHTS * light) / 100.0
         if self.gravity > most:
@@ -187,6 +188,7 @@ class Box:
             raise settings.refusal("molecules", problem, at_least=enough)
         self.width = rounded(self.height * aspect)
         self.density = n / (self.height * self.width)
+        # the diameter of spheres whose mean free path is 1
         across = rounded((math.sqrt(2.0) * math.pi * self.density) ** -0.5) if self.thin else 1.0
         # dsmc conducts better, and is more viscous, for its cells; that of an occupancy is not known here
         self.usual = not {"cell", "occupancy"} & set(engine.options)
@@ -200,12 +202,14 @@ class Box:
         self.gravity = rounded(si.gravity / scale.acceleration)
         self.beside = settings.sides == "warm-and-cold"
         self.walls = (0, 1) if self.beside else (4, 5)
+        # wave numbers of rolls: half waves across the box, or whole waves where it is periodic
         self.waves = np.arange(1, 7) * (2 if settings.sides == "periodic" else 1) * math.pi / self.width
         try:
             pressure = float(self.rest().pressure[0])
         except ValueError as error:
             raise settings.refusal("packing", f"is too much: {error}", "give less, or a warmer ceiling") from error
         self.scale = Scale(scale.length, scale.mass, energy, si.surface_pressure / (pressure * scale.pressure))
+        # the cells in which temperature and wind are measured
         self.rows = int(min(max(round(math.sqrt(n / (CROWD * aspect))), 4), 16))
         self.columns = int(min(max(round(aspect * self.rows), 4), 64))
 
@@ -254,6 +258,7 @@ def _layered(box: Box, settings: Settings, rng: RandomNumbers) -> tuple[np.ndarr
     rest = box.rest()
     even = settings.start == "mixed"
     density = np.ones_like(rest.density) if even else rest.density
+    # the share of the molecules below each height
     below = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
     below /= below[-1]
     if box.thin:
@@ -262,7 +267,8 @@ def _layered(box: Box, settings: Settings, rng: RandomNumbers) -> tuple[np.ndarr
         x = x if turn else edge / box.width + x * (1.0 - 2.0 * edge / box.width)
         place = np.stack([x * box.width, y, np.interp(up, below, rest.height)], axis=1)
     else:
-        # rows of discs as far apart as the air is thin, as near in a row as where it is densest
+        # discs stand in rows: the rows are farther apart where the air is thinner; within a row the distance is that
+        # of the densest air
         wide = box.width - (0.0 if turn else 1.0)
         columns = max(int(wide * math.sqrt(float(density.max()))) + (0 if turn else 1), 1)
         rows = -(-n // columns)

@@ -1,6 +1,6 @@
 """Discs of unlike mass collide in a plane, and share their energy.
 
-Sixty pucks on a frictionless table, light and heavy, start at one speed: the heavy ones carry most of the
+Sixty pucks on a frictionless table, light and heavy, start at the same speed: the heavy ones carry most of the
 energy. Every collision conserves momentum and energy to the last digits of a computer. Collisions alone
 bring light and heavy discs to the same mean energy, so the light ones are fast in the end. This
 is why hydrogen flies faster than oxygen in the same air.

@@ -1,6 +1,6 @@
 """Evaporation cools the water that remains.
 
-Dry air over a pool of water, at the pressure of the air outside and without heat from anywhere. Of the molecules
+Dry air over a pool of water, at the pressure of the air outside and without heat from outside. Of the molecules
 of the pool only those leave that happen to have far more energy than the mean, and the rest grows colder: first
 the pool, then the air above it. The more vapour there is, the more of it returns to the pool; when as many molecules
 come back as leave, the air is saturated.

@@ -130,9 +130,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     n = settings.molecules
     scale, density, sides, excess = _start(settings, ideal=engine.ideal)
     mean_free_time = free_time_of(density, ideal=engine.ideal)
-    length = tuple(sides + 1.0)
+    length = tuple(sides + 1.0)  # in diameters: no centre comes nearer to a wall than a radius
     duration = settings.ascent * mean_free_time
     environment = _environment(settings, duration * scale.time)
+    # the driver moves the piston so that the pressure in the box follows these pressures
     pressures = rounded(_route(settings) / scale.pressure)
     times = np.linspace(0.0, duration, len(pressures))
     driver = FollowPressure(
@@ -149,6 +150,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     ascent, crowding = _ascent(settings), excess * density
 
     def scatter(outside: np.ndarray) -> np.ndarray:
+        """Return the standard error at each frame, as a share of the temperature, from the pressures so far [Pa]."""
         way = replace(ascent, route=(settings.si.pressure, *outside), length=settings.ascent * len(outside) / FRAMES)
         return way.scatter(n, crowding)[1:]
 

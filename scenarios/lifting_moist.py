@@ -1,8 +1,8 @@
 """A parcel of moist air rises past its cloud base.
 
-Below it cools along the dry adiabat, by ten degrees per kilometre. At the lifting condensation level more molecules
-begin to condense than evaporate, and each that condenses releases its binding energy: from
-there on the parcel cools half as fast, along the moist adiabat.
+Below it the parcel cools along the dry adiabat, by ten degrees per kilometre. At the lifting condensation level more
+molecules begin to condense than evaporate, and each that condenses releases its binding energy: from there on the
+parcel cools half as fast, along the moist adiabat.
 
 Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and the
 pressure at each moment. What emerges is the level of the cloud base, where the parcel, cooled by the receding piston,
@@ -65,7 +65,7 @@ class Settings(SceneSettings):
     pressure: float = setting(1000.0, "hPa", "pressure at the ground", low=300.0, high=1100.0)
     top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=100.0, high=1000.0)
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
-    rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
+    rain: bool = setting(False, "", "whether it rains")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(1000.0, "1", "duration of the ascent, in mean free times at its start", low=20.0, high=1e6)
     area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)

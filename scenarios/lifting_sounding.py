@@ -59,7 +59,7 @@ class Settings(SceneSettings):
     sounding: str = setting(BUILT_IN, "", "file of a sounding, or weisman-klemp for the analytic one")
     molecules: int = setting(30_000, "1", "number of molecules in the parcel", low=200, high=1_000_000)
     top_pressure: float = setting(150.0, "hPa", "pressure at which the ascent ends", low=50.0, high=900.0)
-    rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
+    rain: bool = setting(False, "", "whether it rains")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(1400.0, "1", "duration of the ascent, in mean free times at its start", low=20.0, high=1e6)
     area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)

@@ -2,8 +2,8 @@
 
 A parcel climbs a mountain of two kilometres, sinks into a valley at one, climbs a second of three and sinks to the
 plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down the rest of
-the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over a longer way than it cooled at that
-rate. Without rain it would arrive with the temperature at which it started.
+the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over more kilometres than it had cooled
+at that rate. Without rain it would arrive with the temperature at which it started.
 
 Prescribed: the curve e_s(T), the path, and how much cloud rains out, and how fast. What emerges is where clouds begin
 and end, how much rain falls, and how warm the parcel arrives.
@@ -67,7 +67,7 @@ class Settings(SceneSettings):
     valley: float = setting(1.0, "km", "height of the valley between", low=0.0, high=6.0)
     second: float = setting(3.0, "km", "height of the second mountain", low=0.1, high=6.0)
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
-    rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
+    rain: bool = setting(True, "", "whether it rains")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     travel: float = setting(600.0, "1", "duration of the crossing, in mean free times at its start", low=20.0, high=1e6)
     area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)
@@ -211,7 +211,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         more=rain if settings.rain else (),
         headline="rain" if settings.rain else "",
     )
-    way = "the way of the parcel, from the plain to the plain beyond"
+    way = "path of the parcel, from the plain to the plain beyond"
     time = "time in the box; in the Alps hours"
     return (
         replace(atmosphere_panel("Over two mountains", way=way), start=(settings.temperature, settings.pressure)),

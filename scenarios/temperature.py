@@ -1,14 +1,14 @@
 """What temperature is: the motion of molecules.
 
-Molecules of air at their real density fly in a cube some nanometres wide, whose six walls are warm. They start
-cold. A molecule that hits a wall leaves it with a random speed that belongs to the temperature of the wall. So the
+Molecules of air at their real density fly in a cube some nanometres wide, whose six walls are warm. The molecules start
+cold. One that hits a wall leaves it with a random speed that belongs to the temperature of the wall. So the
 gas becomes as warm as the walls within a fraction of a nanosecond. The speeds then follow Maxwell's law, and the
-impacts on the walls add up to the pressure n k T Z.
+impacts on the walls add up to the pressure n k T Z, where Z is a little more than 1 because molecules have a size.
 
-Modelled: hard spheres of the mass and the diameter of air, fully accommodating walls. Left out: gravity
-(over twenty nanometres it does nothing), rotation (it does not change how fast molecules fly), and that
-air is a mixture. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K for
-two hundred.
+Modelled: hard spheres of the mass and the diameter of air, which leave the walls with random velocities. Left out:
+gravity (over twenty nanometres its effect is too small to be seen), rotation (it does not change how fast molecules
+fly), and that air is a mixture. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K
+for two hundred.
 """
 
 import math
@@ -44,7 +44,7 @@ ladder = (
     Series("dsmc", "duration", (5, 20, 80, 320)),
     Series("stepped:applet", "delta", (0.8, 0.4, 0.2), {"duration": 5}, _LATE),
 )
-"""Runs worth comparing: steps miss collisions, in proportion to the square of their length."""
+"""Runs to be compared by `atmosbox tradeoff`: steps miss collisions, in proportion to the square of their length."""
 
 
 class Settings(SceneSettings):
@@ -74,7 +74,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the box: cold molecules at random places between warm walls, and what is measured of them."""
     si, n = settings.si, settings.molecules
     scale, gas = _gas(settings, ideal=engine.ideal)
-    length = (rounded(gas.side) + 1.0,) * 3  # centres reach all but a radius at each wall; the unit is a diameter
+    length = (rounded(gas.side) + 1.0,) * 3  # in diameters: no centre comes nearer to a wall than a radius
     cold = scale.reduced_temperature(si.start_temperature)
     speeds = Maxwell(cold) if settings.start == "maxwell" else EqualSpeeds(math.sqrt(3.0 * cold))
     start = Start(n, (speeds, Scattered()))

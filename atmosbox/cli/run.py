@@ -61,7 +61,8 @@ def run(
         bool | None,
         typer.Option(
             "--save-molecules/--no-save-molecules",
-            help="Save place and velocity of every molecule, in every frame.  [default: if they take less than 10 MB]",
+            help="Save position and velocity of every molecule, in every frame.  "
+            "[default: if they take less than 10 MB]",
             show_default=False,
         ),
     ] = None,

@@ -252,7 +252,7 @@ def way(parcel: Parcel, driver: FollowPressure) -> Knob:
     def turn(share: float) -> None:
         _lead(parcel, driver, share)
 
-    return Knob("way", "place on its way to which the parcel moves", "percent", 0.0, 100.0, 100.0, turn)
+    return Knob("way", "place on its path to which the parcel moves", "percent", 0.0, 100.0, 100.0, turn)
 
 
 def _lead(parcel: Parcel, driver: FollowPressure, share: float) -> None:

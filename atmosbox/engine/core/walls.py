@@ -78,6 +78,8 @@ Wall = Specular | Periodic | HeatBath | Piston
 
 @dataclass(frozen=True)
 class _Laws:
+    """The walls as numbers, one entry for each wall."""
+
     law: list[int] = field(default_factory=list)
     accommodation: list[float] = field(default_factory=list)
     corners: list[list[tuple[float, float]]] = field(default_factory=list)

@@ -116,6 +116,7 @@ def _move(thread, first, last, count, step, air, features):
     r = gas.radius
     nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
     per_x, per_y, per_z = cells_per_length(step.top, grid, gas, box)
+    # between walls centres come no nearer to them than a radius; along a periodic axis they reach the whole length
     along_x = Axis(r, box.length_x - r, per_x, nx - 1, 1)
     along_y = Axis(r, box.length_y - r, per_y, ny - 1, nx)
     along_z = Axis(r, step.top - r, per_z, nz - 1, nx * ny)
@@ -258,6 +259,7 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 index_by_cell(columns.cell, columns.order, grid.place[t], first, last)
             # collide: the volume of a cell is the part that centres can reach
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
+            # times n (n - 1) and the largest relative speed, `sweep` is the number of pairs to draw in a cell
             sweep = 0.5 * run.cross_section * dt / volume
             for t in prange(threads):
                 here = Air(columns, grid, gas, box, walls, workspace, tries, None)

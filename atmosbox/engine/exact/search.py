@@ -244,6 +244,7 @@ def search(i, t, at, boundary, gas, modes):
     since = t - copies.epoch[START]
     path = path_of(at, since, gas, modes)
     seeker = _seeker(t, at, radius, since, path, slots[2] >> 1, gas, modes)
+    # copies are written where it is in new cells, and in all its cells if its velocity is new: then its clock reads t
     moved = crossing or gas.molecules[i].clock == t
     left = new & entered
     while left != 0:
