@@ -160,7 +160,6 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a weight that would leave hardly any air below the ceiling."""
         si = self.si
-        # the gravity under which the box is one scale height high
         light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
         most = math.floor(100.0 * HEIGHTS * light) / 100.0
         if self.gravity > most:
@@ -523,7 +522,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         )  # fmt: skip
     else:
         profile = Panel(
-            "profile", TITLES.get(settings.case, "Mixed air comes near the adiabat"),
+            "profile", TITLES.get(settings.case, "Mixed air comes nearer to the adiabat"),
             (
                 Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
                 Line("layer_temperature_conduction", "height", "conducted, at rest", "theory"),
