@@ -40,6 +40,15 @@ class Machine {
     else this.view.setFloat64(place, value, true);
   }
 
+  get(kernel, argument) {
+    return this.view.getFloat64(this.plan.slots[kernel][argument], true);
+  }
+
+  // Set a number that is an argument of several kernels.
+  setAll(argument, value) {
+    for (const [kernel, slots] of Object.entries(this.plan.slots)) if (argument in slots) this.set(kernel, argument, value);
+  }
+
   call(kernel) {
     const block = this.plan.blocks[kernel];
     if (this.kernels[kernel](block)) throw new Error(`${kernel} has failed`);

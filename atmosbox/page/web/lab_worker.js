@@ -126,15 +126,19 @@ class Box {
         continue;
       }
       if (passed !== DONE) {
-        this.playing = false;
-        this.failed = true;
-        refuse(`The box cannot go on: ${WHY[passed]}. Begin again.`);
+        this.stop(passed);
         return;
       }
       this.now = until;
       if (until === due && !this.measure()) return;
       if (performance.now() > deadline) return;
     }
+  }
+
+  // Stop a box that cannot go on.
+  stop(why) {
+    Object.assign(this, { playing: false, failed: true });
+    refuse(`The box cannot go on: ${WHY[why]}. Begin again.`);
   }
 
   // Let the instruments sample the box; return whether to go on.
@@ -402,13 +406,24 @@ class Box {
       const found = knob.grid ? between(knob, si).to : si * knob.times / knob.over;
       for (const [argument, wall] of Object.entries(knob.walls ?? {})) machine.set(knob.kernel, argument, BigInt(wall));
       machine.set(knob.kernel, knob.argument, (knob.rounds ? rounded(found) : found) * (knob.end ?? 1));
-      machine.call(knob.kernel);
+      if (knob.everywhere) this.pull(knob);
+      else machine.call(knob.kernel);
     }
     machine.call("begin_averages_anew");
     Object.assign(this, { since: frame, led: true });
     this.knobs[name] = asked;
     if (this.turned.length <= MOST_TURNS) this.turned.push({ frame, name, value });
     say({ type: "controls", controls: this.controls() });
+  }
+
+  // Change gravity: the kernel prepares the box, then all kernels have the new gravity, and the molecules are placed.
+  pull({ kernel, argument, everywhere }) {
+    const { machine } = this, gravity = machine.get(kernel, argument);
+    if (gravity === machine.get(kernel, everywhere)) return;
+    let done = machine.call(kernel);
+    machine.setAll(everywhere, gravity);
+    if (done === DONE) done = machine.call("place");
+    if (done !== DONE) this.stop(done);
   }
 
   async undo() {
