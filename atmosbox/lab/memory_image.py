@@ -28,7 +28,7 @@ BASE = 0x20000
 _LINE = 64
 _HEAD = 256
 _SET = (".highest", ".gravity")
-"""Numbers inside of arguments that a page sets, besides whole arguments: the end of the scale of speeds, and gravity."""
+"""Numbers inside arguments that a page sets, besides whole arguments: the end of the scale of speeds, and gravity."""
 
 Works = Mapping[str, tuple[Any, ...]]
 

@@ -32,7 +32,7 @@ TURNED = {
     "convection": (
         {"molecules": 300},
         60,
-        {"floor_temperature": (-250.0, 500.0), "ceiling_temperature": (-250.0, 500.0)},
+        {"floor_temperature": (-250.0, 500.0), "ceiling_temperature": (-250.0, 500.0), "gravity": (1.0, 30.0)},
     ),
     "condensation": ({"molecules": 300}, 60, {"temperature": (-20.0, 60.0)}),
     "evaporation": ({"molecules": 300, "pool": 60}, 60, {"temperature": (-20.0, 60.0), "open_pool": (0.0, 100.0)}),

@@ -51,6 +51,7 @@ def _inside(x, side, inverse):
 @functools.cache
 def pulling(modes: Modes) -> Callable[..., Any]:
     """Return the kernel ``set_gravity`` of one set of modes."""
+
     @kernel
     def bring_to_now(gas, now):
         """Give every molecule its present position and velocity; return the sum of mass times height."""
