@@ -109,6 +109,16 @@ function between({ grid, curves, otherwise }, value) {
   return Object.fromEntries(Object.entries(curves).map(([name, values]) => [name, mix(values[low], values[high])]));
 }
 
+// The curves of a table at the values of a row of measurements: see `tables` in atmosbox/lab/theory_table.py.
+function curvesAt({ along, over, times = {}, ...table }, row) {
+  const found = between(table, over ? row[along] / row[over] : row[along]);
+  for (const [name, variable] of Object.entries(times)) {
+    const scaled = (value) => (value === null ? null : value * row[variable]);
+    if (name in found) found[name] = Array.isArray(found[name]) ? found[name].map(scaled) : scaled(found[name]);
+  }
+  return found;
+}
+
 const brief = (value) => (Number.isFinite(value) ? Number(value.toPrecision(7)) : null);
 
 // A time series without a limit of time, with at most as many points as a graph can show.

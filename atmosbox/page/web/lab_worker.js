@@ -152,10 +152,8 @@ class Box {
     if (this.frame - this.since > plan.settle) machine.call("note_frame");
     const reading = machine.array("gauges.reading"), row = {};
     for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
-    for (const { along, times, ...table } of plan.tables) {
-      for (const [name, value] of Object.entries(between(table, row[along]))) {
-        if (!Array.isArray(value)) row[name] = times?.[name] ? value * row[times[name]] : value;
-      }
+    for (const table of plan.tables) {
+      for (const [name, value] of Object.entries(curvesAt(table, row))) if (!Array.isArray(value)) row[name] = value;
     }
     if (this.led) for (const name of plan.planned) if (name in row) row[name] = NaN;
     this.trace.add(row);
@@ -225,8 +223,8 @@ class Box {
       const shown = Array.from(machine.array(array).subarray(from, from + count), (value) => brief(value * factor));
       if (shown.some((value) => value !== null)) values[name] = shown;
     }
-    for (const { along, ...table } of plan.tables) {
-      for (const [name, row] of Object.entries(between(table, last[along]))) if (Array.isArray(row)) values[name] = this.led && plan.planned.includes(name) ? [] : row.map(brief);
+    for (const table of plan.tables) {
+      for (const [name, row] of Object.entries(curvesAt(table, last))) if (Array.isArray(row)) values[name] = this.led && plan.planned.includes(name) ? [] : row.map(brief);
     }
     if (plan.whole) {
       for (const name of Object.keys(last)) values[name] = trace.column(name);
