@@ -45,7 +45,7 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.headline import CHANCE_ALONE
-from atmosbox.scene.knob import wall_temperature
+from atmosbox.scene.knob import gravity, wall_temperature
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import average_beside
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -313,7 +313,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
         },
-        knobs=(wall_temperature(parcel, scale, settings, low=100.0, high=600.0),)
+        knobs=(
+            wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
+            *gravity(parcel, scale, settings, low=1.0, high=30.0),
+        )
         if settings.floor == "heat-bath"
         else (),
     )

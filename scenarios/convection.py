@@ -55,7 +55,7 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
-from atmosbox.scene.knob import wall_temperature
+from atmosbox.scene.knob import gravity, wall_temperature
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import BlockAverage, growth_per_step, overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -78,6 +78,8 @@ Over 60 seeds of stable air the values scatter by .96 and .80 of these errors; w
 """
 HEIGHTS = 6.0
 """Greatest height of the box, in scale heights half-way between the temperatures of floor and ceiling."""
+LEAST_GRAVITY = 1.0
+"""Least gravity to which the knob can be turned [m s-2]: without any, another engine would be needed."""
 LOWEST = 4.0, 1.5
 """Least height of the box, in diameters of discs and in mean free paths of spheres."""
 CROWD = 14.0
@@ -157,11 +159,16 @@ class Settings(SceneSettings):
         declared = {parameter.name: parameter for parameter in self.describe()}["case"]
         super().__init__(**(CASES[str(declared.parse(values.get("case", declared.default)))] | values))
 
-    def check(self) -> None:
-        """Refuse a weight that would leave hardly any air below the ceiling."""
+    @property
+    def most_gravity(self) -> float:
+        """The gravity under which the box is `HEIGHTS` scale heights high [m s-2]."""
         si = self.si
         light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
-        most = math.floor(100.0 * HEIGHTS * light) / 100.0
+        return math.floor(100.0 * HEIGHTS * light) / 100.0
+
+    def check(self) -> None:
+        """Refuse a weight that would leave hardly any air below the ceiling."""
+        most = self.most_gravity
         if self.gravity > most:
             problem = f"is so large that the box is more than {HEIGHTS:g} scale heights high"
             raise self.refusal("gravity", problem, ", or a lower height", at_most=most)
@@ -356,9 +363,12 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "time": f"{settings.duration:g} s, of which the first {settings.duration * SETTLE / FRAMES:.0f} are left "
             "out of the means",
         },
-        knobs=tuple(
-            wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
-            for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
+        knobs=(
+            *(
+                wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
+                for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
+            ),
+            *gravity(parcel, scale, settings, low=LEAST_GRAVITY, high=settings.most_gravity),
         ),
     )
 

@@ -66,7 +66,7 @@ _INSTRUMENTS = (Air, Clusters, Discs, Flow, Layers, Leaving, Lift, Mixing, Moist
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _READINGS = 64
 _DENSITIES = 129
-"""Number of densities at which the adiabatic lapse rate is tabulated, up to that at which discs freeze."""
+"""Number of densities at which the adiabatic lapse rate over gravity is tabulated, up to that at which discs freeze."""
 _FRESH = 0.2
 """Share by which the newest frame counts in the wind that is drawn."""
 
@@ -330,7 +330,7 @@ def _wind(setup: Setup) -> Any:
         phases = np.concatenate(across)
         gas = law.Gas(2 if parcel.planar else 3, float(parcel.diameter[0]))
         dense = law.FREEZING_PACKING_FRACTION_DISCS / float(law.packing_fraction_discs(1.0, gas.diameter))
-        lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), parcel.gravity))
+        lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), 1.0))
     return Wind(
         sums=np.zeros((3, rows * columns)),
         upright=np.zeros(rows * columns),

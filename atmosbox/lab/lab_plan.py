@@ -10,6 +10,7 @@ import numpy as np
 from atmosbox.file.variables import known
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.kernels.pulling import can_pull
 from atmosbox.lab.lab_box import LabBox, lab_box
 from atmosbox.lab.lab_stage import COLDER, lab_stage, plain, running_panels
 from atmosbox.lab.memory_image import BASE, Image, image
@@ -57,10 +58,10 @@ _SLOWEST = 0.15
 _FIGURES = 4
 """Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
 _KNOBS = (
-    "temperature", "floor_temperature", "ceiling_temperature", "altitude", "way", "open_pool", "attraction",
+    "temperature", "floor_temperature", "ceiling_temperature", "gravity", "altitude", "way", "open_pool", "attraction",
 )  # fmt: skip
 _AT_REST = "layer_temperature_conduction"
-"""The temperature of air at rest between the walls of the start; it ends when one of them is turned."""
+"""The temperature of air at rest between the walls of the start; it ends when a knob is turned."""
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
@@ -233,6 +234,8 @@ def _readings(box: LabBox) -> list[tuple[str, int, float]]:
             ("parcel_pressure", Reading.PARCEL_PRESSURE, scale.pressure),
             ("moment", Reading.MOMENT, 1.0),
         ]
+    if any(knob.name == "gravity" for knob in setup.knobs):
+        found.append(("gravity", Reading.GRAVITY, scale.acceleration))
     warm = np.isfinite(setup.parcel.wall_kT())
     if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
         warm[slice(*box.warmed)] = True
@@ -323,6 +326,7 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     setup = box.setup
     # a knob of a user's own scene is a function in Python, of which the page knows nothing
     kept = [knob for knob in setup.knobs if knob.name in _KNOBS and box.prepared.scene in SCENES]
+    kept = [knob for knob in kept if knob.name != "gravity" or can_pull(box.modes)]
     numbers: dict[str, Any] = {}
     for knob in kept:
         unit = declared_unit(knob.unit)
@@ -336,6 +340,9 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
                 told |= {} if knob.leave is None else {"leave": "smooth_walls", "rounds": True}
             if knob.wall is not None:
                 told["walls"] = {"1": knob.wall, "2": knob.wall + 1}
+        elif knob.name == "gravity":
+            told |= {"kernel": "set_gravity", "argument": "4", "over": setup.scale.acceleration, "rounds": True}
+            told["everywhere"] = "0.box.gravity"
         elif knob.name == "attraction":
             told |= {"kernel": "attract", "argument": "3"}
         elif knob.name == "open_pool":

@@ -27,8 +27,8 @@ __all__ = ["BASE", "Image", "image", "parts"]
 BASE = 0x20000
 _LINE = 64
 _HEAD = 256
-_SET = "highest"
-"""Name of the number inside an argument that a page sets, besides whole arguments: the end of the scale of speeds."""
+_SET = (".highest", ".gravity")
+"""Numbers inside arguments that a page sets, besides whole arguments: the end of the scale of speeds, and gravity."""
 
 Works = Mapping[str, tuple[Any, ...]]
 

@@ -82,9 +82,10 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     Returns
     -------
     list of dict
-        ``along`` is the variable that the table is a function of, ``grid`` has its values, and ``curves`` the values of
-        each curve at these; the page interpolates linearly. ``otherwise`` has the values of curves while the variable
-        is not known, and ``times`` names the variable by which a curve is multiplied.
+        ``along`` is the variable that the table is a function of, divided by the variable ``over`` if there is one;
+        ``grid`` has its values, and ``curves`` the values of each curve at these; the page interpolates linearly.
+        ``otherwise`` has the values of curves while the variable is not known, and ``times`` names the variable by
+        which a curve is multiplied.
 
     Examples
     --------
@@ -101,8 +102,12 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
     if lift is not None:
         return [_way(setup, lift), _adiabat(setup, lift)]
-    knob = next((knob for knob in setup.knobs if knob.name == "temperature"), None)
-    return [_walls(prepared, found, knob)] if knob is not None else _course(prepared, setup, found)
+    knobs = {knob.name: knob for knob in setup.knobs}
+    if {"temperature", "gravity"} <= set(knobs):
+        return [_column(prepared, found, knobs["temperature"], knobs["gravity"])]
+    return (
+        [_walls(prepared, found, knobs["temperature"])] if "temperature" in knobs else _course(prepared, setup, found)
+    )
 
 
 def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
@@ -130,6 +135,39 @@ def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
         for name, values in prepared.module.theory(here, prepared.settings).items():
             curves.setdefault(name, []).append(plain(values[-1:])[0] if _is_series(values, found) else plain(values))
     return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
+
+
+def _column(prepared: Prepared, found: xr.Dataset, knob: Knob, pull: Knob) -> dict[str, Any]:
+    """Return the profiles of theory of a column at rest as functions of the temperature of its floor over gravity.
+
+    Hard molecules have no energy of their own to compare kT with. So, at the same ratio, a profile does not depend on
+    gravity, or is in proportion to it, as pressure and temperature are.
+    """
+    usual = to_si(pull.value, pull.unit)
+    low, high = (
+        to_si(knob.low, knob.unit) / to_si(pull.high, pull.unit),
+        to_si(knob.high, knob.unit) / to_si(pull.low, pull.unit),
+    )
+    grid = np.geomspace(low, high, _POINTS)
+
+    def told(ratio: float, gravity: float) -> dict[str, Any]:
+        warm = found.wall_temperature.where(found.wall_temperature.isnull(), ratio * gravity)
+        here = found.assign(
+            wall_temperature=warm, gravity=("elapsed_time", np.full(warm.sizes["elapsed_time"], gravity))
+        )
+        return dict(prepared.module.theory(here, prepared.settings))
+
+    rows = [told(ratio, usual) for ratio in grid.tolist()]
+    double = told(grid[0], 2.0 * usual)
+    grows = {name for name, values in rows[0].items() if np.allclose(double[name], 2.0 * np.asarray(values))}
+    curves = {name: [plain(row[name] / usual if name in grows else row[name]) for row in rows] for name in rows[0]}
+    return {
+        "along": "wall_temperature[z_low]",
+        "over": "gravity",
+        "grid": plain(grid),
+        "curves": curves,
+        "times": dict.fromkeys(sorted(grows), "gravity"),
+    }
 
 
 def _is_series(values: Any, found: xr.Dataset) -> bool:

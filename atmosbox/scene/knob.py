@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.settings import SceneSettings
     from atmosbox.scene.units import Scale
 
-__all__ = ["Knob", "altitude", "open_pool", "wall_temperature", "warmed_walls", "way"]
+__all__ = ["Knob", "altitude", "gravity", "open_pool", "wall_temperature", "warmed_walls", "way"]
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,34 @@ def wall_temperature(
         parcel.set_wall_kT(scale.reduced_temperature(kelvin), wall)
 
     return replace(_of_setting(settings, name, low, high, turn), wall=wall)
+
+
+def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float) -> tuple[Knob, ...]:
+    """Return the knob that sets gravity; nothing for a box without gravity, whose kernels have none.
+
+    Parameters
+    ----------
+    parcel, scale, settings
+        The box, its scale and its settings.
+    low, high
+        The range, in the unit of the setting; above 0, and widened to include the value at the start.
+
+    Examples
+    --------
+    The work of a change is in the energy budget:
+
+    >>> from atmosbox.simulation.preparation import build, prepare
+    >>> setup = build(prepare("convection", {"molecules": 200}))
+    >>> knob = {knob.name: knob for knob in setup.knobs}["gravity"]
+    >>> knob.set(20.0)
+    >>> setup.parcel.gravity_work > 0.0, setup.parcel.ledger() < 1e-12
+    (True, True)
+    """
+
+    def turn(acceleration: float) -> None:
+        parcel.set_gravity(rounded(acceleration / scale.acceleration))
+
+    return (_of_setting(settings, "gravity", low, high, turn),) if parcel.gravity > 0.0 else ()
 
 
 def warmed_walls(

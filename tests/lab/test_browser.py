@@ -292,12 +292,13 @@ def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkey
     assert shown.digest() == state_of(setup.parcel)
 
 
-def test_floor_and_ceiling_are_turned_apart_and_the_wind_is_drawn(lab):
+def test_floor_ceiling_and_gravity_are_turned_apart_and_the_wind_is_drawn(lab):
     settings = {"molecules": 500}
     shown = lab("convection", settings)
     setup = build(prepare("convection", settings, engine="exact"))
     knobs, frame = {knob.name: knob for knob in setup.knobs}, 0
-    for until, name, value in ((10, "floor_temperature", 100.0), (20, "ceiling_temperature", -200.0), (30, "", 0.0)):
+    turns = (10, "floor_temperature", 100.0), (20, "ceiling_temperature", -200.0), (30, "gravity", 25.0), (40, "", 0.0)
+    for until, name, value in turns:
         shown.ask(type="frames", value=until)
         advance(setup, until, frame)
         frame = until
@@ -309,6 +310,7 @@ def test_floor_and_ceiling_are_turned_apart_and_the_wind_is_drawn(lab):
     floor, ceiling = (table[f"wall_temperature[{wall}]"][[9, 10, 20]] for wall in ("z_low", "z_high"))
     assert floor == pytest.approx([543.15, 373.15, 373.15])
     assert ceiling == pytest.approx([28.15, 28.15, 73.15])
+    assert table["gravity"][[29, 30]] == pytest.approx([9.80665, 25.0])
     assert re.fullmatch(r"wind: longest arrow \d+ m/s", shown.page.locator(".wind").inner_text())
 
 

@@ -26,8 +26,8 @@ class Flow(NamedTuple):
     ``tagged : (molecule,)`` is 1 for the molecules that are followed from the frame ``release`` on: those lower than
     ``low`` [length] and nearer than ``near`` to the middle, as a share of the width. ``wind : (2, part)`` is the wind
     along x and z of the last frames [velocity], of which the newest counts by the share ``fresh``. ``lapse :
-    (density,)`` is how fast air cools that rises [energy/length], at the densities from 0 to ``dense``, and ``adiabat :
-    (layer,)`` the temperature of such air through the middle of the height [energy].
+    (density,)`` is how fast air cools that rises, over gravity [mass], at the densities from 0 to ``dense``, and
+    ``adiabat : (layer,)`` the temperature of such air through the middle of the height [energy].
     """
 
     sums: Any
@@ -187,7 +187,7 @@ def _still() -> tuple[Callable[..., Any], ...]:
 
 @kernel
 def _cooling(density, flow):
-    """Return how fast air of a density cools that rises [energy/length], from the table."""
+    """Return how fast air of a density cools that rises, over gravity [mass], from the table."""
     last = flow.lapse.size - 1
     place = min(max(density / flow.dense, 0.0), 1.0) * last
     low = min(int(place), last - 1)
@@ -195,18 +195,18 @@ def _cooling(density, flow):
 
 
 @kernel
-def adiabat(height, mean, flow):
+def adiabat(box, mean, flow):
     """Write the temperature of air that has risen or sunk from the middle: `mean` holds densities, then kT of layers.
 
     It is NaN as long as a layer has no density.
     """
     layers = flow.adiabat.size
-    thick = height / layers
+    thick = box.length_z / layers
     for layer in range(layers):
         flow.adiabat[layer] = 0.0
         if layer > 0:
             step = 0.5 * (_cooling(mean[layer], flow) + _cooling(mean[layer - 1], flow))
-            flow.adiabat[layer] = flow.adiabat[layer - 1] - step * thick
+            flow.adiabat[layer] = flow.adiabat[layer - 1] - box.gravity * step * thick
     low, high = (layers - 1) // 2, layers // 2
     off = 0.5 * (mean[layers + low] + mean[layers + high] - flow.adiabat[low] - flow.adiabat[high])
     for layer in range(layers):

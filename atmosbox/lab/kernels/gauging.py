@@ -21,7 +21,7 @@ from atmosbox.lab.kernels.in_gas import is_away, number_in_gas
 from atmosbox.lab.kernels.passing import ascent_of
 from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
-__all__ = ["Gauges", "Reading", "gauging"]
+__all__ = ["ENERGY", "Gauges", "Reading", "gauging"]
 
 
 class Gauges(NamedTuple):
@@ -29,7 +29,8 @@ class Gauges(NamedTuple):
 
     ``reading : (Reading,)`` has the last readings. ``warmth : (2,)`` is the sum of kT over the samples of a frame
     [energy], and their number; ``before : (8,)`` the impulses of the walls and the time at the end of the last frame,
-    and the energy at the start of all frames [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4
+    and the energy at the start of all frames and what changes of gravity
+    have given since [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4
     the floor only.
 
     ``edges : (bin + 1,)`` are the edges of the bins of speed [velocity], ``counts : (bin,)`` the molecules in them, and
@@ -83,9 +84,11 @@ class Reading(IntEnum):
     WIND = WIND
     ROLLS = ROLLS
     ALOFT = ALOFT
+    GRAVITY = 24
 
 
-_TIME, _ENERGY = 6, 7
+_TIME, ENERGY = 6, 7
+"""Indices of ``Gauges.before``."""
 
 
 @functools.cache
@@ -277,7 +280,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         for wall in range(6):
             gauges.before[wall] = gas.tallies.impulse[wall]
         gauges.before[_TIME] = gas.walls.epoch[0] + now
-        gauges.before[_ENERGY] = kinetic + rotational + potential + condensed_energy(gas, book)
+        gauges.before[ENERGY] = kinetic + rotational + potential + condensed_energy(gas, book)
         gauges.warmth[:] = 0.0
         gauges.counts[:] = 0.0
         gauges.sums[:] = 0.0
@@ -301,13 +304,14 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         for wall in range(6):
             given += gas.tallies.heat[wall] + gas.tallies.work[wall]
             passed += abs(gas.tallies.heat[wall]) + abs(gas.tallies.work[wall])
-        largest = max(abs(total), abs(gauges.before[_ENERGY]), passed)
+        largest = max(abs(total), abs(gauges.before[ENERGY]), passed)
         reading[Reading.TIME] = time
         reading[Reading.KT] = gauges.warmth[0] / max(gauges.warmth[1], 1.0)
         reading[Reading.PRESSURE] = pressure(gas, now, lasted, gauges)
-        reading[Reading.LEDGER] = abs(total - gauges.before[_ENERGY] - given) / largest if largest > 0.0 else 0.0
+        reading[Reading.LEDGER] = abs(total - gauges.before[ENERGY] - given) / largest if largest > 0.0 else 0.0
         reading[Reading.CONTACTS] = gas.tallies.count[0]
         reading[Reading.KINETIC] = kinetic
+        reading[Reading.GRAVITY] = gas.box.gravity
         for wall in range(6):
             warm = gas.walls.law[wall] == HEAT_BATH
             reading[Reading.WALL_KT + wall] = wall_kT(gas.walls, wall, time) if warm else math.nan

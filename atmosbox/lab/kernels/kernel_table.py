@@ -19,6 +19,7 @@ from atmosbox.lab.kernels.height_profile import end_profile
 from atmosbox.lab.kernels.moist_passing import moist_knobs
 from atmosbox.lab.kernels.passing import passing
 from atmosbox.lab.kernels.picture import picture
+from atmosbox.lab.kernels.pulling import can_pull, pulling
 from atmosbox.lab.kernels.starting import can_start, starting
 
 __all__ = ["kernels"]
@@ -68,7 +69,7 @@ def note_windy_frame(gas, gauges, speeds, layers):
     """Do the same, and compute the adiabat of the averages."""
     note_frame(gas, gauges, speeds, layers)
     if gauges.flow.adiabat.size > 0:
-        adiabat(gas.box.length_z, layers.mean, gauges.flow)
+        adiabat(gas.box, layers.mean, gauges.flow)
     return 0
 
 
@@ -76,6 +77,7 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
     found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
+    found |= {"set_gravity": pulling(modes)} if can_pull(modes) and not wells else {}
     if wells:
         pass_time, place, attract = attracting(modes)
         begin, sample, end_frame, look = clustering(modes)

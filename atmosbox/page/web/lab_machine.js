@@ -40,6 +40,15 @@ class Machine {
     else this.view.setFloat64(place, value, true);
   }
 
+  get(kernel, argument) {
+    return this.view.getFloat64(this.plan.slots[kernel][argument], true);
+  }
+
+  // Set a number that is an argument of several kernels.
+  setAll(argument, value) {
+    for (const [kernel, slots] of Object.entries(this.plan.slots)) if (argument in slots) this.set(kernel, argument, value);
+  }
+
   call(kernel) {
     const block = this.plan.blocks[kernel];
     if (this.kernels[kernel](block)) throw new Error(`${kernel} has failed`);
@@ -98,6 +107,16 @@ function between({ grid, curves, otherwise }, value) {
     return a === null || b === null ? null : a + share * (b - a);
   };
   return Object.fromEntries(Object.entries(curves).map(([name, values]) => [name, mix(values[low], values[high])]));
+}
+
+// The curves of a table at the values of a row of measurements: see `tables` in atmosbox/lab/theory_table.py.
+function curvesAt({ along, over, times = {}, ...table }, row) {
+  const found = between(table, over ? row[along] / row[over] : row[along]);
+  for (const [name, variable] of Object.entries(times)) {
+    const scaled = (value) => (value === null ? null : value * row[variable]);
+    if (name in found) found[name] = Array.isArray(found[name]) ? found[name].map(scaled) : scaled(found[name]);
+  }
+  return found;
 }
 
 const brief = (value) => (Number.isFinite(value) ? Number(value.toPrecision(7)) : null);

@@ -126,15 +126,19 @@ class Box {
         continue;
       }
       if (passed !== DONE) {
-        this.playing = false;
-        this.failed = true;
-        refuse(`The box cannot go on: ${WHY[passed]}. Begin again.`);
+        this.stop(passed);
         return;
       }
       this.now = until;
       if (until === due && !this.measure()) return;
       if (performance.now() > deadline) return;
     }
+  }
+
+  // Stop a box that cannot go on.
+  stop(why) {
+    Object.assign(this, { playing: false, failed: true });
+    refuse(`The box cannot go on: ${WHY[why]}. Begin again.`);
   }
 
   // Let the instruments sample the box; return whether to go on.
@@ -148,10 +152,8 @@ class Box {
     if (this.frame - this.since > plan.settle) machine.call("note_frame");
     const reading = machine.array("gauges.reading"), row = {};
     for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
-    for (const { along, times, ...table } of plan.tables) {
-      for (const [name, value] of Object.entries(between(table, row[along]))) {
-        if (!Array.isArray(value)) row[name] = times?.[name] ? value * row[times[name]] : value;
-      }
+    for (const table of plan.tables) {
+      for (const [name, value] of Object.entries(curvesAt(table, row))) if (!Array.isArray(value)) row[name] = value;
     }
     if (this.led) for (const name of plan.planned) if (name in row) row[name] = NaN;
     this.trace.add(row);
@@ -221,8 +223,8 @@ class Box {
       const shown = Array.from(machine.array(array).subarray(from, from + count), (value) => brief(value * factor));
       if (shown.some((value) => value !== null)) values[name] = shown;
     }
-    for (const { along, ...table } of plan.tables) {
-      for (const [name, row] of Object.entries(between(table, last[along]))) if (Array.isArray(row)) values[name] = this.led && plan.planned.includes(name) ? [] : row.map(brief);
+    for (const table of plan.tables) {
+      for (const [name, row] of Object.entries(curvesAt(table, last))) if (Array.isArray(row)) values[name] = this.led && plan.planned.includes(name) ? [] : row.map(brief);
     }
     if (plan.whole) {
       for (const name of Object.keys(last)) values[name] = trace.column(name);
@@ -402,13 +404,24 @@ class Box {
       const found = knob.grid ? between(knob, si).to : si * knob.times / knob.over;
       for (const [argument, wall] of Object.entries(knob.walls ?? {})) machine.set(knob.kernel, argument, BigInt(wall));
       machine.set(knob.kernel, knob.argument, (knob.rounds ? rounded(found) : found) * (knob.end ?? 1));
-      machine.call(knob.kernel);
+      if (knob.everywhere) this.pull(knob);
+      else machine.call(knob.kernel);
     }
     machine.call("begin_averages_anew");
     Object.assign(this, { since: frame, led: true });
     this.knobs[name] = asked;
     if (this.turned.length <= MOST_TURNS) this.turned.push({ frame, name, value });
     say({ type: "controls", controls: this.controls() });
+  }
+
+  // Change gravity: the kernel prepares the box, then all kernels have the new gravity, and the molecules are placed.
+  pull({ kernel, argument, everywhere }) {
+    const { machine } = this, gravity = machine.get(kernel, argument);
+    if (gravity === machine.get(kernel, everywhere)) return;
+    let done = machine.call(kernel);
+    machine.setAll(everywhere, gravity);
+    if (done === DONE) done = machine.call("place");
+    if (done !== DONE) this.stop(done);
   }
 
   async undo() {

@@ -1,0 +1,101 @@
+"""Change gravity while a box runs: what `ParcelSet.set_gravity` does.
+
+Gravity is a number among the arguments of each kernel that moves molecules. The kernel here uses the old one. It brings
+all molecules to the present and chooses layers of cells; then the page writes the new gravity into the arguments of all
+kernels, and calls ``place``.
+"""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.exact.encounter import kind_of
+from atmosbox.lab.kernels.gauging import ENERGY
+from atmosbox.lab.kernels.laying_out import Column, Layout, write_column
+from atmosbox.lab.kernels.pairwise import pairwise_sum
+from atmosbox.lab.kernels.passing import Passed
+from atmosbox.lab.kernels.starting import can_start
+
+__all__ = ["can_pull", "pulling"]
+
+
+def can_pull(modes: Modes) -> bool:
+    """Return whether a page can change gravity in boxes of a set of modes: columns of one gas without a piston."""
+    return modes.gravity and modes.rows and can_start(modes) and not (modes.piston or modes.mixed or modes.phases)
+
+
+@kernel
+def _remainder(x, side):
+    """Return x modulo a side of the box, as numpy computes it: all steps but the last sum are exact."""
+    left, step = abs(x), side
+    while 2.0 * step <= left:
+        step *= 2.0
+    while step >= side:
+        left -= step if left >= step else 0.0
+        step *= 0.5
+    return left if x >= 0.0 or left == 0.0 else side - left
+
+
+@kernel
+def _inside(x, side, inverse):
+    """Return a coordinate inside of a periodic box."""
+    if inverse == 0.0:
+        return x
+    # once more, because a tiny negative coordinate first becomes that of the other side
+    return _remainder(_remainder(x, side), side)
+
+
+@functools.cache
+def pulling(modes: Modes) -> Callable[..., Any]:
+    """Return the kernel ``set_gravity`` of one set of modes."""
+
+    @kernel
+    def bring_to_now(gas, now):
+        """Give every molecule its present position and velocity; return the sum of mass times height."""
+        box, heights = gas.box, 0.0
+        for i in range(gas.molecules.size):
+            molecule = gas.molecules[i]
+            mass, _, _ = kind_of(i, gas, modes)
+            dt = now - molecule.clock
+            z = molecule.z + dt * molecule.vz - 0.5 * box.gravity * dt * dt
+            molecule.x = _inside(molecule.x + dt * molecule.vx, box.length_x, box.inverse_x)
+            molecule.y = _inside(molecule.y + dt * molecule.vy, box.length_y, box.inverse_y)
+            molecule.z = z
+            molecule.vz -= box.gravity * dt
+            molecule.clock = now
+            heights += mass * z
+        return heights
+
+    @kernel
+    def warmth(gas, begun):
+        """Return kT of the molecules or of the warmest wall, whichever is higher: see `ParcelSet`."""
+        number, walls = gas.molecules.size, gas.walls
+        for i in range(number):
+            molecule = gas.molecules[i]
+            mass, _, _ = kind_of(i, gas, modes)
+            square = molecule.vx * molecule.vx + molecule.vy * molecule.vy + molecule.vz * molecule.vz
+            begun.key[i] = mass * square
+        kinetic = 0.5 * pairwise_sum(begun.key, number, begun.waiting, begun.partial)
+        kT = 2.0 * kinetic / ((2.0 if gas.box.planar else 3.0) * number)
+        for wall in range(6):
+            if walls.law[wall] == HEAT_BATH:
+                kT = max(kT, walls.schedule_kT[walls.schedule[wall]])
+        return kT
+
+    @kernel
+    def set_gravity(gas, book, begun, gauges, gravity):
+        """Prepare the box for another gravity [length/time^2]; return ``DONE``, or ``FULL`` if memory is too short."""
+        gauges.before[ENERGY] += (gravity - gas.box.gravity) * bring_to_now(gas, book.now[0])
+        kT, layout = warmth(gas, begun), begun.layout
+        c = layout.column
+        weight = begun.weight / gas.molecules.size * gravity
+        column = Column(weight, kT, c.wanted, c.thinnest, c.count, c.old)
+        gas.cells.copies.place[:] = 0
+        fits = write_column(kT, gas, Layout(layout.shape, layout.filled, layout.edge, layout.radius, column))
+        return Passed.DONE.value if fits else Passed.FULL.value
+
+    made: Callable[..., Any] = set_gravity
+    return made
