@@ -203,7 +203,8 @@ def _run(task: Task) -> Done:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            write(execute(prepare(**task.asked)).dataset, task.path, force=True)
+            if not os.path.exists(task.path):  # a Dask worker that is killed may leave a file and no answer
+                write(execute(prepare(**task.asked)).dataset, task.path, force=True)
         except FileError:
             raise
         except Exception as error:
