@@ -8,18 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from atmosbox.cli import option
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import (
-    Accuracy,
-    Engine,
-    Force,
-    Json,
-    SceneName,
-    ValuesOfAll,
-    Verbose,
-    out_option,
-    quiet_option,
-)
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import EngineError, PhysicsError
@@ -42,7 +32,7 @@ _MOST_NAMED = 5
 )
 def sweep(
     ctx: typer.Context,
-    scene: Annotated[str, SceneName],
+    scene: Annotated[str, option.SceneName],
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -52,12 +42,12 @@ def sweep(
         ),
     ] = None,
     members: Annotated[str, typer.Option(metavar="N", help="Number of runs at each point.")] = "1",
-    values: ValuesOfAll = None,
+    values: option.ValuesOfAll = None,
     seed: Annotated[
         str | None, typer.Option(metavar="N", help="Seed, from which that of each run is made.  [default: 1]")
     ] = None,
-    engine: Engine = None,
-    accuracy: Accuracy = None,
+    engine: option.Engine = None,
+    accuracy: option.Accuracy = None,
     jobs: Annotated[
         str | None, typer.Option(metavar="N", help="Number of processes.  [default: one for each core]")
     ] = None,
@@ -65,14 +55,14 @@ def sweep(
         str | None,
         typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler: tcp://host:8786."),
     ] = None,
-    out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE-sweep.nc in this folder]")] = None,
-    force: Force = False,
+    out: Annotated[str | None, option.out_option("The netCDF file.  [default: SCENE-sweep.nc in this folder]")] = None,
+    force: option.Force = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show the points, compute nothing and write nothing.")
     ] = False,
-    as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
-    verbose: Verbose = False,
+    as_json: option.Json = False,
+    quiet: Annotated[bool, option.quiet_option("Print the path of the file, no more.")] = False,
+    verbose: option.Verbose = False,
 ) -> None:
     """Run a scene with many settings: how its numbers depend on them.
 
@@ -135,7 +125,7 @@ def _say(grid: Plan, found: xr.Dataset, path: Path, *, as_json: bool, quiet: boo
     from atmosbox.simulation.runner import LEDGER_LIMIT
     from atmosbox.text.report import ledger_line, next_command
 
-    failed = [
+    failed: list[dict[str, Any]] = [
         {"point": place // grid.members + 1, "member": place % grid.members + 1, "reason": str(reason)}
         for place, reason in enumerate(found.member_reason.values.flat if "member_reason" in found else ())
         if reason

@@ -179,7 +179,12 @@ def _headline(name: str, about: dict[str, Any], found: list[Floats], dims: tuple
 def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], command: str) -> dict[str, Any]:
     """Return the global attributes of the file of a sweep."""
     engines = " and ".join(sorted({str(each.engine) for each in plan.prepared}))
-    parameters = {"scene": plan.scene, "settings": plan.defaults, "engine": engines, "version": __version__}
+    parameters: dict[str, Any] = {
+        "scene": plan.scene,
+        "settings": plan.defaults,
+        "engine": engines,
+        "version": __version__,
+    }
     vary = {name: list(values) for name, values in plan.vary.items()}
     grid = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
     parameters |= {"save_molecules": False, "sweep": grid | {"accuracy": plan.accuracy, "headlines": names}}
