@@ -16,10 +16,10 @@ import pytest
 
 from atmosbox import scenarios
 from atmosbox.cli import check
-from atmosbox.errors import FileError, Option, SettingError, UnitError, UnknownSettingError
+from atmosbox.errors import FileError, SettingError, UnitError, UnknownSettingError
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import runner
-from atmosbox.sweep import SweepInterrupted, member_seed, parse_vary, plan, sweep
+from atmosbox.sweep import member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.result import mean_and_error
 from tests import in_process
 from tests.few_frames import cut
@@ -61,6 +61,11 @@ def build(settings, engine=EXACT):
         raise EngineError("The discs have stalled.")
     if settings.trouble == 3:
         os.kill(os.getpid(), signal.SIGKILL)
+    stop = Path(__file__).with_name("stop")
+    if stop.exists() and settings.molecules > 20:
+        number = int(stop.read_text())
+        stop.unlink()
+        signal.raise_signal(number)
     if settings.molecules > 20 and "HOLD" in os.environ:
         time.sleep(600)
     if Path(__file__).with_name("slow").exists():
@@ -96,16 +101,6 @@ def typed(*words):
     return in_process.typed("sweep", *words)
 
 
-def stop_after(share):
-    """Return a progress function that stops, as by Ctrl-C, when a share of the sweep is done."""
-
-    def show(done, word):
-        if done > share:
-            raise KeyboardInterrupt
-
-    return show
-
-
 SETTINGS = scenarios.load("temperature").Settings
 
 
@@ -118,54 +113,47 @@ def test_what_varies_is_typed_as_a_row_or_as_a_list():
         ("pressure=0.1bar:10bar:3log", (100.0, 1000.0, 10000.0)), ("start=maxwell", ("maxwell",)),
     ]  # fmt: skip
     for text, values in cases:
-        (axis,) = parse_vary([text], SETTINGS)
-        assert axis.values == values
-        assert [type(value) for value in axis.values] == [type(value) for value in values]
+        (found,) = parse_vary([text], SETTINGS).values()
+        assert found == values
+        assert [type(value) for value in found] == [type(value) for value in values]
 
 
-def test_what_cannot_vary_is_refused_with_what_to_type():
-    cases = [
-        ("temperature", SettingError, 'has no "="'),
-        ("=1:2:3", SettingError, "has no name"),
-        ("temperature=", SettingError, "has no values"),
-        ("temperature=1:2", UnitError, "neither a:b:n"),
-        ("temperature=1:2:3:4", UnitError, "neither a:b:n"),
-        ("temperature=1:2:x", UnitError, "neither a:b:n"),
-        ("temperature=1:2:1", SettingError, "asks for 1 values"),
-        ("temperature=1:2:100000", SettingError, "from 2 to 10000"),
-        ("temperature=2:2:3", SettingError, "begins where it ends"),
-        ("temperature=1:-300:3", SettingError, "below the lowest"),
-        ("temperature=5m:6m:3", UnitError, "is a length"),
-        ("temperature=1,2,1", SettingError, "names a value twice"),
-        ("temperature=nan:2:3", UnitError, "not finite"),
-        ("molecules=100:102:9", SettingError, "only 3 different values"),
-        ("molecules=1.5,2", UnitError, "not whole"),
-        ("start=fast", SettingError, "is not one of"),
-        ("seed=1:5:5", SettingError, "members=8"),
-    ]
-    for text, error, sentence in cases:
-        with pytest.raises(error, match=sentence) as refused:
-            parse_vary([text], SETTINGS)
-        assert type(refused.value) is error
-        assert isinstance(refused.value.remedy[0], Option)
+REFUSED = [
+    ({"vary": []}, SettingError, 'is not given: give vary={"name": "a:b:n"}'),
+    ({"vary": ["temperature"]}, SettingError, 'no values: give vary={"temperature": "a:b:n"}'),
+    ({"vary": ["=1:2:3"]}, SettingError, 'has no name or no values: give vary={"name"'),
+    ({"vary": ["temperature=1:2"]}, UnitError, 'neither a:b:n, a:b:nlog nor x,y,z: give vary={"temperature"'),
+    ({"vary": ["temperature=1:2:3:4"]}, UnitError, "neither a:b:n"),
+    ({"vary": ["temperature=1:2:x"]}, UnitError, "neither a:b:n"),
+    ({"vary": ["temperature=1:2:" + "9" * 5000]}, UnitError, "neither a:b:n"),
+    ({"vary": ["temperature=1:2:1"]}, SettingError, "asks for 1 values"),
+    ({"vary": ["temperature=1:2:900000"]}, SettingError, "from 2 to 100000"),
+    ({"vary": ["temperature=2:2:3"]}, SettingError, "only 1 different values"),
+    ({"vary": ["temperature=1:-300:3"]}, SettingError, "below the lowest"),
+    ({"vary": ["temperature=5m:6m:3"]}, UnitError, "is a length"),
+    ({"vary": ["temperature=1,2,1"]}, SettingError, "names a value twice"),
+    ({"vary": ["temperature=nan:2:3"]}, UnitError, "not finite"),
+    ({"vary": ["molecules=100:102:9"]}, SettingError, "only 3 different values"),
+    ({"vary": ["start=fast"]}, SettingError, 'is not one of maxwell, equal: give vary={"start": "maxwell,equal"}'),
+    ({"vary": ["seed=1:5:5"]}, SettingError, "members=8"),
+    ({"vary": ["temprature=1:2:3"]}, UnknownSettingError, 'vary={"temperature": "1:2:3"}'),
+    ({"vary": ["molecules=1,2", "molecules=3,4"]}, SettingError, "varied twice"),
+    ({"settings": {"molecule": 3}}, UnknownSettingError, "give molecules="),
+    ({"settings": {"molecules": 3}}, SettingError, "leave out molecules"),
+    ({"members": 0}, SettingError, "give members=1"),
+    ({"members": 10**6}, SettingError, "vary fewer"),
+    ({"engine": "magic"}, SettingError, "magic"),
+    ({"accuracy": "perfect"}, SettingError, "perfect"),
+]
+"""What is asked for, the class of the error, and what its sentence must say: the value, and what to give."""
 
 
-def test_a_sweep_is_refused_before_anything_runs():
-    cases = [
-        ({"vary": []}, SettingError, "is not given"),
-        ({"vary": ["temprature=1:2:3"]}, UnknownSettingError, r"vary=.\"temperature\": \"1:2:3\""),
-        ({"settings": {"molecule": 3}}, UnknownSettingError, "give molecules="),
-        ({"settings": {"molecules": 3}}, SettingError, "leave out molecules"),
-        ({"vary": ["molecules=1,2", "molecules=3,4"]}, SettingError, "varied twice"),
-        ({"members": 0}, SettingError, "give members=1"),
-        ({"members": 10**6}, SettingError, "vary fewer"),
-        ({"engine": "magic"}, SettingError, "magic"),
-        ({"accuracy": "perfect"}, SettingError, "perfect"),
-        ({"settings": {"pressure": "5 m"}}, UnitError, "is a length"),
-    ]
-    for words, error, sentence in cases:
-        with pytest.raises(error, match=sentence):
-            plan("temperature", words.pop("vary", ["molecules=10,20"]), **words)
+@pytest.mark.parametrize(("words", "error", "said"), REFUSED)
+def test_what_cannot_be_swept_is_refused_before_anything_runs(words, error, said):
+    with pytest.raises(error) as refused:
+        plan("temperature", **{"vary": ["molecules=10,20"], **words})
+    assert type(refused.value) is error
+    assert said in str(refused.value)
 
 
 def test_seeds_are_those_of_the_documented_rule_and_all_different():
@@ -192,7 +180,7 @@ def test_the_error_of_a_mean_is_from_the_scatter_where_there_is_enough_of_it():
 
 def test_a_sweep_holds_what_single_runs_find(tmp_path):
     grid = plan("elastic-collisions", ["molecules=10,20", "speed=0.5,1"], settings=QUICK, members=2, seed=5)
-    found = sweep(grid, tmp_path / "discs.nc", jobs=1).dataset
+    found = sweep(grid, tmp_path / "discs.nc", jobs=1)
     assert dict(found.sizes) == {"molecules": 2, "speed": 2, "member": 2}
     one = runner.execute(
         runner.prepare("elastic-collisions", {**QUICK, "molecules": 20, "speed": 1, "seed": member_seed(5, 4, 2)})
@@ -217,7 +205,7 @@ def test_the_same_seed_gives_the_same_file_on_one_process_or_several(scene, tmp_
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     grid = plan(scene, ["molecules=10,20"], members=2)
     for jobs in (1, 2):
-        assert sweep(grid, tmp_path / f"{jobs}.nc", jobs=jobs).computed == 4
+        sweep(grid, tmp_path / f"{jobs}.nc", jobs=jobs)
     # HDF5 itself notes the second in which a file was made: all else is the same
     assert read(tmp_path / "1.nc").identical(read(tmp_path / "2.nc"))
 
@@ -238,47 +226,46 @@ def test_the_file_keeps_to_the_conventions_with_words_switches_units_and_failure
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_a_failed_member_is_missing_with_its_reason_and_the_others_are_not_lost(scene, tmp_path):
+def test_a_run_that_fails_is_told_and_takes_no_other_with_it(scene, tmp_path):
+    """One run of three raises an error, and one kills its process; the command is given two processes."""
+    with pytest.raises(SettingError, match=r"is no setting to run with \(at trouble=1\)"):
+        plan(scene, ["trouble=0,1"])
     file = tmp_path / "discs-sweep.nc"
-    done = typed(scene, "--vary", "trouble=0,2", "--members", "2", "--jobs", "1", "--out", file)
+    done = typed(scene, "--vary", "trouble=0,2,3", "--jobs", "2", "--out", file, "--json")
     assert done.exit_code == 1, done.output
-    assert "2 of 4 runs failed" in done.output
-    assert "trouble=2, member 2 (The discs have stalled)" in done.output
+    assert "2 of 3 runs failed" in done.stderr
+    assert "2, member 1 (The discs have stalled); 3, member 1 (Its process died twice" in done.stderr
+    means = [point["headlines"]["energy_of_light_discs"]["mean"] for point in json.loads(done.stdout)["points"]]
+    assert means[0] > 0.0
+    assert means[1:] == [None, None]
     found = read(file)
-    assert np.isfinite(found.energy_of_light_discs.values).tolist() == [True, False]
-    assert found.member_status.values.tolist() == [[0, 0], [1, 1]]
-    assert found.member_reason.astype(str).values.tolist() == [["", ""], ["The discs have stalled."] * 2]
+    assert np.isfinite(found.energy_of_light_discs.values).tolist() == [True, False, False]
+    assert found.member_status.values.ravel().tolist() == [0, 1, 1]
+    assert found.member_reason.astype(str).values[1].tolist() == ["The discs have stalled."]
+    assert len(set(built(scene).values())) > 1, "only the run that killed its process was begun twice"
+    assert sorted(path.name for path in (tmp_path / "discs-sweep").glob("*.nc")) == ["1-1.nc"]
 
 
-def test_a_process_that_dies_takes_no_other_run_with_it(scene, tmp_path):
-    done = typed(scene, "--vary", "trouble=0,3", "--jobs", "2", "--out", tmp_path / "a.nc", "--json")
-    assert done.exit_code == 1, done.output
-    assert "1 of 2 runs failed" in done.stderr
-    assert "Its process died twice" in done.stderr
-    found = json.loads(done.stdout)
-    assert found["points"][0]["headlines"]["energy_of_light_discs"]["mean"] > 0.0
-    assert found["points"][1]["headlines"]["energy_of_light_discs"]["mean"] is None
-
-
-def test_a_stopped_sweep_goes_on_within_its_runs_and_finds_the_same(scene, tmp_path, monkeypatch):
-    """Ctrl-C in the middle of the third of six runs; then the same call, and one with more members."""
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_stopped_sweep_goes_on_and_finds_the_same(scene, tmp_path, number, status):
+    """The third of six runs is stopped; then the same call, and one with more members."""
     file = tmp_path / "a.nc"
+    words = [scene, "--vary", "molecules=10,20,30", "--members", "2", "--jobs", "1", "--out", file]
+    (tmp_path / "stop").write_text(str(int(number)), encoding="utf-8")
+    stopped = typed(*words)
+    assert stopped.exit_code == status, stopped.output
+    assert "2 of 6 runs are saved" in stopped.stderr
+    before, shares = set(built(scene)), []
     grid = plan(scene, ["molecules=10,20,30"], members=2)
-    with pytest.raises(SweepInterrupted) as stop:
-        sweep(grid, file, jobs=1, progress=stop_after(2.5 / 6.0))
-    assert stop.value.saved == 2
-    before = set(built(scene))
-    remarks, shares = [], []
-    done = sweep(grid, file, jobs=1, note=remarks.append, progress=lambda share, word: shares.append(share))
-    assert (done.computed, done.recalled) == (4, 2)
-    assert "2 of 6 runs are saved" in remarks[0]
-    assert "and 1 begun" in remarks[0]
-    assert min(shares) > 2.3 / 6.0, "the third run goes on from its saved state"
-    assert sum(built(scene)[seed] for seed in before) == 4, "two finished runs once, the third twice"
-    fresh = sweep(grid, jobs=1).dataset
+    done = sweep(grid, file, jobs=1, progress=lambda share, word: shares.append(round(6 * share)))
+    assert shares == [2, 3, 4, 5, 6]
+    assert sorted(built(scene)[seed] for seed in before) == [1, 1, 2], "only the run that was stopped begins again"
+    fresh = sweep(grid, jobs=1)
+    assert fresh.drop_attrs().identical(done.drop_attrs())
     assert fresh.drop_attrs().identical(read(file).drop_attrs())
-    assert sweep(plan(scene, ["molecules=10,20,30"], members=3), file, jobs=1).recalled == 6
+    again = len(list(tmp_path.glob("run-*")))
+    sweep(plan(scene, ["molecules=10,20,30"], members=3), file, jobs=1)
+    assert len(list(tmp_path.glob("run-*"))) == again + 3
 
 
 def test_another_sweep_never_takes_the_place_of_one(scene, tmp_path):
@@ -286,9 +273,9 @@ def test_another_sweep_never_takes_the_place_of_one(scene, tmp_path):
     file = tmp_path / "a.nc"
     sweep(plan(**first), file, jobs=1)
     for change, sentence in [
-        ({"seed": 9}, "with seed 1 and not 9"),
+        ({"seed": 9}, "with setting seed 1 and not 9"),
         ({"vary": ["molecules=10,30"]}, "with vary"),
-        ({"settings": {**QUICK, "side": 2}}, "with setting side not given and not 2m"),
+        ({"settings": {**QUICK, "side": 2}}, "with setting side .* and not 2"),
         ({"engine": "stepped"}, "with engine"),
     ]:
         with pytest.raises(FileError, match=sentence) as refused:
@@ -297,7 +284,9 @@ def test_another_sweep_never_takes_the_place_of_one(scene, tmp_path):
     scene.write_text(f"{SCENE}\n", encoding="utf-8")
     with pytest.raises(FileError, match="with content of"):
         sweep(plan(**first), file, jobs=1)
-    assert sweep(plan(**first), file, jobs=1, force=True).computed == 2
+    before = len(list(tmp_path.glob("run-*")))
+    sweep(plan(**first), file, jobs=1, force=True)
+    assert len(list(tmp_path.glob("run-*"))) == before + 2
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "diary.txt").touch()
     with pytest.raises(FileError, match="holds other things than a sweep"):
@@ -346,5 +335,5 @@ def test_a_killed_sweep_leaves_no_process_and_computes_nothing_twice(scene, tmp_
     done = in_process.typed(*words, "1")
     assert done.exit_code == 0, done.output
     assert "2 of 4 runs are saved" in done.stderr
-    undisturbed = sweep(plan(scene, words[3:4]), jobs=1).dataset
+    undisturbed = sweep(plan(scene, words[3:4]), jobs=1)
     assert read(file).drop_attrs().identical(undisturbed.drop_attrs())

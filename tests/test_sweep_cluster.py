@@ -8,7 +8,7 @@ import pytest
 
 from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read
-from atmosbox.sweep import plan, sweep, workers
+from atmosbox.sweep import conduct, plan, sweep
 from tests.few_frames import cut
 from tests.test_sweep import SCENE
 
@@ -52,20 +52,19 @@ def test_a_sweep_outlives_a_killed_worker_and_computes_nothing_twice_that_was_sa
             os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
 
     swept = sweep(grid, file, scheduler=cluster.scheduler_address, progress=show)
-    assert swept.computed == 9
-    assert swept.failures == ()
+    assert not swept.member_status.values.any()
     assert 3 <= len(at_the_kill) < 9
     begun = Counter(path.name.split("-")[1] for path in tmp_path.glob("run-*"))
     assert len(begun) == 9
     assert sum(begun.values()) <= 9 + 2, "only what the killed worker had not handed over is run again"
     slow.unlink()
-    alone = sweep(grid, jobs=1).dataset
+    alone = sweep(grid, jobs=1)
     assert alone.drop_attrs().identical(read(file).drop_attrs())
 
 
 @pytest.mark.parametrize("address", [UNUSED, "nonsense://here", "tcp://no-such-host.invalid:8786"])
 def test_a_scheduler_that_does_not_answer_is_said(monkeypatch, address):
-    monkeypatch.setattr(workers, "PATIENCE", 0.1)
-    with pytest.raises(SettingError, match="does not answer") as refused:
+    monkeypatch.setattr(conduct, "PATIENCE", 0.1)
+    with pytest.raises(SettingError, match="cannot be reached") as refused:
         sweep(discs(), scheduler=address)
     assert address in str(refused.value)

@@ -1,6 +1,6 @@
 """The command line: it parses what was typed and calls other modules, which do the work.
 
-Each command is one file: its options on top, below them what it does. A new file is a new command. The commands share
+Each command is one file: its options on top, below them what it does. A new one is named in `_COMMANDS`. They share
 
 `application`  the Typer application that all commands belong to
 `option`       the options that several commands have
@@ -20,7 +20,6 @@ terminate.
 import atexit
 import importlib
 import os
-import pkgutil
 import signal
 import sys
 import threading
@@ -41,8 +40,11 @@ from atmosbox.text.stream import tell  # noqa: E402
 
 __all__ = ["app", "main"]
 
-for _file in pkgutil.iter_modules(__path__):
-    importlib.import_module(f"atmosbox.cli.{_file.name}")
+_COMMANDS = "list_scenes info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
+"""The files of the commands in the order of the help: what a beginner needs first."""
+
+for _file in _COMMANDS.split():
+    importlib.import_module(f"atmosbox.cli.{_file}")
 
 if _loading:
     signal.signal(signal.SIGINT, signal.default_int_handler)

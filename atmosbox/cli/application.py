@@ -20,31 +20,25 @@ R = TypeVar("R")
 
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
-# The order of the commands in the help: what a beginner needs first; commands not named here follow by name.
-_ORDER = "list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
 
 
 class _Group(TyperGroup):
-    """A group that remembers what was typed; its help lists the commands in `_ORDER`, each with its full summary."""
+    """A group that remembers what was typed; its help lists each command with its full summary."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         ctx.meta[_WORDS] = list(args)
-        if not args:
-            return super().parse_args(ctx, args)
         try:
             return super().parse_args(ctx, args)
         except UsageError as error:
-            option = getattr(error, "option_name", ctx.meta[_WORDS][0])
-            raise OneSentence(f"{option} is no option of atmosbox: type atmosbox --help to see what is.") from error
+            if not ctx.meta[_WORDS]:  # the help is shown
+                raise
+            said = str(error.format_message()).rstrip(".")
+            raise OneSentence(f"{said}: type atmosbox --help to see what may be given.") from error
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
             raise command_refusal(args, self.list_commands(ctx))
         return super().resolve_command(ctx, args)
-
-    def list_commands(self, ctx: Any) -> list[str]:
-        order = {name: place for place, name in enumerate(_ORDER.split())}
-        return sorted(self.commands, key=lambda name: (order.get(name, len(order)), name))
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         with formatter.section("Commands"):

@@ -7,7 +7,6 @@ Which names and values are allowed is defined by the settings of the scene:
 from __future__ import annotations
 
 import os
-import re
 import tomllib
 from typing import Any, NamedTuple
 
@@ -80,7 +79,7 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
     FileError
         If the file cannot be read.
     ConfigError
-        If it is not TOML, or holds anything else; the message names the line if that is known.
+        If it is not TOML, or holds anything else; the message names what.
 
     Examples
     --------
@@ -98,10 +97,10 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "not a path"
         raise FileError(f"{where} cannot be read ({reason}): give the path of a settings file.") from error
-    text, content = _toml(raw, where)
+    content = _toml(raw, where)
 
     def refusal(key: str, problem: str, fix: str) -> ConfigError:
-        return ConfigError(f"{where}{_line(text, key)} has {shown(key)} {problem}: {fix}.")
+        return ConfigError(f"{where} has {shown(key)} {problem}: {fix}.")
 
     known = (*_WORDS, "settings")
     for key in sorted(content.keys() - set(known)):
@@ -124,30 +123,17 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
     return Asked(words["scene"] or "", settings, words["engine"], accuracy=words["accuracy"])
 
 
-def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:
-    """Return a settings file's text and content, or raise ConfigError."""
+def _toml(raw: bytes, where: str) -> dict[str, Any]:
+    """Return the content of a settings file, or raise ConfigError."""
     if raw.startswith((b"\x89HDF", b"CDF")):
         raise ConfigError(f"{where} is a netCDF file, not a settings file: give it with --from {where}.")
     if len(raw) > _LARGEST_CONFIG or b"\0" in raw:
         raise ConfigError(f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8.")
     try:
-        text = raw.decode("utf-8-sig")
+        return tomllib.loads(raw.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise ConfigError(f"{where}, line {line} is not UTF-8 text: save the file as UTF-8.") from error
-    try:
-        return text, tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        found = re.fullmatch(r"(.+) \(at (?:line ([0-9]+)|end).*\)", str(error))
-        what = " is not TOML"
-        if found:
-            what = f", line {found[2] or text.count(chr(10)) + 1} is not TOML ({shown(found[1])})"
         fix = 'write one name = value a line, with text in quotes, such as temperature = "25degC"'
-        raise ConfigError(f"{where}{what}: {fix}.") from error
-
-
-def _line(text: str, key: str) -> str:
-    """Return for example ", line 3" for the first line with a key; empty if the line cannot be told."""
-    table = r"(?:settings[ \t]*\.[ \t]*)?"
-    found = re.search(rf"^[ \t\[]*{table}[\"']?{re.escape(key)}[\"' \t]*[=.\]]", text, re.MULTILINE)
-    return f", line {text.count(chr(10), 0, found.start()) + 1}" if found else ""
+        raise ConfigError(f"{where} is not TOML ({shown(str(error))}): {fix}.") from error

@@ -11,7 +11,6 @@ from atmosbox.cli.application import command
 from atmosbox.cli.option import Force, RunFile, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
-from atmosbox.text.progress import progress
 
 Exported = Literal["extxyz", "csv"]
 """The formats of other programs."""
@@ -59,10 +58,7 @@ def export(
         return
     path = chosen(out, default, force=force, quiet=quiet)
     place, _ = named(path, format, get_args(Exported), force=force, what="box")
-    with progress("export", quiet=quiet) as show:
-        show(0.0, "writing the molecules")
-        from atmosbox.file.trajectory import extended_xyz
+    from atmosbox.file.trajectory import extended_xyz
 
-        content = extended_xyz(dataset)
-    write_whole(place, content)
+    write_whole(place, extended_xyz(dataset))
     say(str(place))

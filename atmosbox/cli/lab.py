@@ -7,22 +7,8 @@ from typing import Annotated
 
 import typer
 
+from atmosbox.cli import option
 from atmosbox.cli.application import command
-from atmosbox.cli.option import (
-    Accuracy,
-    Config,
-    Engine,
-    Force,
-    Language,
-    PageTheme,
-    SceneName,
-    Seed,
-    Source,
-    Values,
-    Verbose,
-    out_option,
-    quiet_option,
-)
 from atmosbox.cli.output_name import chosen, for_scene
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
@@ -36,24 +22,25 @@ from atmosbox.text.progress import progress
     "atmosbox lab --all --out labs/",
 )
 def lab(
-    scene: Annotated[str | None, SceneName] = None,
-    values: Values = None,
-    config: Config = None,
-    source: Source = None,
-    seed: Seed = None,
-    engine: Engine = None,
-    accuracy: Accuracy = None,
+    scene: Annotated[str | None, option.SceneName] = None,
+    values: option.Values = None,
+    config: option.Config = None,
+    source: option.Source = None,
+    seed: option.Seed = None,
+    engine: option.Engine = None,
+    accuracy: option.Accuracy = None,
     every: Annotated[
         bool, typer.Option("--all", help="Write all scenes and an index of them into a folder, for a course.")
     ] = False,
     out: Annotated[
-        str | None, out_option("The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]")
+        str | None,
+        option.out_option("The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]"),
     ] = None,
-    theme: PageTheme = "auto",
-    language: Language = "auto",
-    force: Force = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the page, no more.")] = False,
-    verbose: Verbose = False,
+    theme: option.PageTheme = "auto",
+    language: option.Language = "auto",
+    force: option.Force = False,
+    quiet: Annotated[bool, option.quiet_option("Print the path of the page, no more.")] = False,
+    verbose: option.Verbose = False,
 ) -> None:
     """Write a page in which a scene runs: the engine itself, in the browser.
 

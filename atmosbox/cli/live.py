@@ -12,22 +12,10 @@ from typing import Annotated
 
 import typer
 
+from atmosbox.cli import option
 from atmosbox.cli.application import command
-from atmosbox.cli.option import (
-    Accuracy,
-    Config,
-    Engine,
-    Language,
-    SceneName,
-    Seed,
-    Source,
-    Values,
-    Verbose,
-    quiet_option,
-)
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
-from atmosbox.errors import SettingError
 
 
 @command(
@@ -37,31 +25,37 @@ from atmosbox.errors import SettingError
     "atmosbox live atmosphere --port 9000",
 )
 def live(
-    scene: Annotated[str | None, SceneName] = None,
-    values: Values = None,
-    config: Config = None,
-    source: Source = None,
-    seed: Seed = None,
-    engine: Engine = None,
-    accuracy: Accuracy = None,
+    scene: Annotated[str | None, option.SceneName] = None,
+    values: option.Values = None,
+    config: option.Config = None,
+    source: option.Source = None,
+    seed: option.Seed = None,
+    engine: option.Engine = None,
+    accuracy: option.Accuracy = None,
     port: Annotated[
-        str | None, typer.Option(metavar="N", help="Port of the page.  [default: the first free one from 8642 on]")
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            max=65535,
+            help="Port of the page.  [default: the first free one from 8642 on]",
+            show_default=False,
+        ),
     ] = None,
     no_token: Annotated[
         bool,
         typer.Option("--no-token", help="Let in anybody on this computer, also without the token of the address."),
     ] = False,
-    language: Language = "auto",
+    language: option.Language = "auto",
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
-    quiet: Annotated[bool, quiet_option("Print the address, no more.")] = False,
-    verbose: Verbose = False,
+    quiet: Annotated[bool, option.quiet_option("Print the address, no more.")] = False,
+    verbose: option.Verbose = False,
 ) -> None:
     """Open a page in which a scene runs: change one thing at a time, and see what follows.
 
     It is the page that lab writes, with all settings of the scene: for a changed setting, the page asks atmosbox for a
     new start. Only this computer reaches it, and the address has a token that is new each time.
     """
-    number = _port(port)
     asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
     prepared = checked(asked)
 
@@ -71,13 +65,13 @@ def live(
 
     token = None if no_token else secrets.token_urlsafe(16)
     with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(prepared, show):
-        server = Server(prepared, port=number, token=token, language=language)
+        server = Server(prepared, port=port, token=token, language=language)
 
     def opened() -> None:
         say(server.address)
         sys.stdout.flush()
         used = server.server_address[1]
-        if number is None and used != PORT:
+        if port is None and used != PORT:
             tell(f"note: port {PORT} is in use, so the page is at port {used}")
         if not no_browser and _display():
             threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
@@ -89,15 +83,6 @@ def live(
     with server:
         number = ended(server, opened)
     raise typer.Exit(TERMINATED if number == signal.SIGTERM else INTERRUPTED)
-
-
-def _port(text: str | None) -> int | None:
-    """Return the port that was asked for."""
-    if text is None:
-        return None
-    if not text.isdecimal() or not 1 <= int(text) <= 65_535:
-        raise SettingError("port", text, "is no whole number from 1 to 65535", "give --port 8642")
-    return int(text)
 
 
 def _display() -> bool:

@@ -4,28 +4,6 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-__all__ = [
-    "Accuracy",
-    "Config",
-    "Engine",
-    "Force",
-    "Format",
-    "Json",
-    "Language",
-    "PageTheme",
-    "RunFile",
-    "SceneName",
-    "Seed",
-    "Source",
-    "Theme",
-    "Values",
-    "ValuesOfAll",
-    "Verbose",
-    "out_option",
-    "quiet_option",
-]
-
-
 Format = Literal["png", "svg", "pdf"]
 """The formats of a figure."""
 Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]

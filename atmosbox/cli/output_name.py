@@ -45,9 +45,7 @@ def beside(files: Sequence[str], kind: str) -> Path:
         if Path(file).name in ("", ".."):
             raise FileError(f"{Path(file)} is a folder: give a file that atmosbox run has written.")
     first = Path(files[0])
-    stem = "-and-".join(Path(file).stem for file in files)
-    if len(stem) > _LONGEST and len(files) > 1:
-        stem = f"{first.stem[:_LONGEST]}-and-{len(files) - 1}-more"
+    stem = "-and-".join(Path(file).stem for file in files)[:_LONGEST]
     return first.with_name(f"{stem}.{kind}")
 
 

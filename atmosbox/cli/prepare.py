@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterator
 from typing import Annotated
@@ -54,7 +53,6 @@ def prepare(
             if spent is not None:
                 seconds[each] = spent
             show(done / len(asked), "running")
-    _find_pace(names)
     waited = time.perf_counter() - began
     folder, size = str(cache_home()), compiled_here()
     if as_json:
@@ -66,18 +64,6 @@ def prepare(
         lines = [(name, engine, f"{s:.1f} s" if s else "kept") for (name, engine), s in seconds.items()]
         say("\n".join(table(["scene", "engine", "compiled in"], lines, width())))
         say(f"\nready after {waited:.0f} s; {size / 1e6:.0f} MB of machine code are kept in {folder}")
-
-
-def _find_pace(names: list[str]) -> None:
-    """Measure how fast this computer is with a small run, unless that has been measured already."""
-    from atmosbox.simulation import runner
-    from atmosbox.simulation.expected_time import expected_time
-
-    if "lifting-dry" in names:
-        prepared = runner.prepare("lifting-dry", {"ascent": 200.0})
-        expected = expected_time(prepared)
-        if expected is not None and not expected.here:
-            runner.execute(prepared)
 
 
 def _engines(scene: str, every: bool) -> list[str]:
@@ -93,9 +79,10 @@ def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, as_completed
 
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    from atmosbox.sweep.conduct import cores
+
     # separate processes, since the compiler holds the lock of the Python interpreter (GIL)
-    with ProcessPoolExecutor(min(cores, len(asked)), multiprocessing.get_context("spawn")) as pool:
+    with ProcessPoolExecutor(min(cores(), len(asked)), multiprocessing.get_context("spawn")) as pool:
         running = {pool.submit(_compile, *each): each for each in asked}
         try:
             for finished in as_completed(running):

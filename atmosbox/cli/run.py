@@ -2,31 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atmosbox.cli import option
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import (
-    Accuracy,
-    Config,
-    Engine,
-    Force,
-    Json,
-    SceneName,
-    Seed,
-    Source,
-    Values,
-    Verbose,
-    out_option,
-    quiet_option,
-)
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, FileError, PhysicsError
+from atmosbox.errors import AtmosboxError, PhysicsError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
@@ -46,17 +32,18 @@ if TYPE_CHECKING:
 )
 def run(
     ctx: typer.Context,
-    scene: Annotated[str | None, SceneName] = None,
-    values: Values = None,
-    config: Config = None,
-    source: Source = None,
-    seed: Seed = None,
-    engine: Engine = None,
-    accuracy: Accuracy = None,
+    scene: Annotated[str | None, option.SceneName] = None,
+    values: option.Values = None,
+    config: option.Config = None,
+    source: option.Source = None,
+    seed: option.Seed = None,
+    engine: option.Engine = None,
+    accuracy: option.Accuracy = None,
     out: Annotated[
-        str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder, or SCENE-2.nc if that is there]")
+        str | None,
+        option.out_option("The netCDF file.  [default: SCENE.nc in this folder, or SCENE-2.nc if that is there]"),
     ] = None,
-    force: Force = False,
+    force: option.Force = False,
     save_molecules: Annotated[
         bool | None,
         typer.Option(
@@ -82,9 +69,9 @@ def run(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show what would run, compute nothing and write nothing.")
     ] = False,
-    as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
-    verbose: Verbose = False,
+    as_json: option.Json = False,
+    quiet: Annotated[bool, option.quiet_option("Print the path of the file, no more.")] = False,
+    verbose: option.Verbose = False,
 ) -> None:
     """Run a scene, and compare what comes out with theory.
 
@@ -128,7 +115,6 @@ def run(
         _describe(prepared, checkpoint.path, quiet=quiet, as_json=as_json, dry_run=False)
     if checkpoint.stale and not quiet and (resume is None or Path(resume).resolve() != checkpoint.part.resolve()):
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
-    before = _stamp(checkpoint.part)
     try:
         hint = None if restart is not None or replay is not None else expected_time(prepared)
         words = "" if hint is None else str(hint)
@@ -147,7 +133,7 @@ def run(
         _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
         raise typer.Exit(stop.exit_code) from stop
     except (KeyboardInterrupt, AtmosboxError):
-        if _stamp(checkpoint.part) not in (None, before):
+        if checkpoint.part.exists() and not checkpoint.stale:
             tell(f"note: the frames that were complete are kept in {checkpoint.part}")
         raise
     if numbered and not quiet:
@@ -231,11 +217,8 @@ def _say_interrupted(
         return
     part = checkpoint.part
     frames = int(stop.outcome.dataset.sizes.get("elapsed_time", 0))
-    from atmosbox.plot.run_figure import panels_of
-
     kept = f"stopped: {frames} complete frames are kept in {part}"
-    with contextlib.suppress(FileError):  # of too few frames there is no figure
-        panels_of(stop.outcome.dataset)
+    if frames > 1:
         kept += f"; to see them: {next_command('plot', part)}"
     tell(kept)
     tell(f"to go on: {next_command('run --resume', part)}")
@@ -244,8 +227,3 @@ def _say_interrupted(
         say_json({**made, "settings": prepared.settings.as_dict()})
     elif quiet:
         say(str(part))
-
-
-def _stamp(path: Path) -> int | None:
-    """Return the time at which a file was last written; None if there is no file."""
-    return path.stat().st_mtime_ns if path.exists() else None

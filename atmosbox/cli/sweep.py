@@ -8,28 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from atmosbox.cli import option
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import (
-    Accuracy,
-    Engine,
-    Force,
-    Json,
-    SceneName,
-    ValuesOfAll,
-    Verbose,
-    out_option,
-    quiet_option,
-)
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, on_command_line
+from atmosbox.errors import EngineError, PhysicsError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from atmosbox.sweep import Plan, Swept
+    from atmosbox.sweep import Plan
 
 _MOST_NAMED = 5
 """Largest number of failures that are printed one by one."""
@@ -42,7 +32,7 @@ _MOST_NAMED = 5
 )
 def sweep(
     ctx: typer.Context,
-    scene: Annotated[str, SceneName],
+    scene: Annotated[str, option.SceneName],
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -52,12 +42,12 @@ def sweep(
         ),
     ] = None,
     members: Annotated[str, typer.Option(metavar="N", help="Number of runs at each point.")] = "1",
-    values: ValuesOfAll = None,
+    values: option.ValuesOfAll = None,
     seed: Annotated[
         str | None, typer.Option(metavar="N", help="Seed, from which that of each run is made.  [default: 1]")
     ] = None,
-    engine: Engine = None,
-    accuracy: Accuracy = None,
+    engine: option.Engine = None,
+    accuracy: option.Accuracy = None,
     jobs: Annotated[
         str | None, typer.Option(metavar="N", help="Number of processes.  [default: one for each core]")
     ] = None,
@@ -65,14 +55,14 @@ def sweep(
         str | None,
         typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler: tcp://host:8786."),
     ] = None,
-    out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE-sweep.nc in this folder]")] = None,
-    force: Force = False,
+    out: Annotated[str | None, option.out_option("The netCDF file.  [default: SCENE-sweep.nc in this folder]")] = None,
+    force: option.Force = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show the points, compute nothing and write nothing.")
     ] = False,
-    as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
-    verbose: Verbose = False,
+    as_json: option.Json = False,
+    quiet: Annotated[bool, option.quiet_option("Print the path of the file, no more.")] = False,
+    verbose: option.Verbose = False,
 ) -> None:
     """Run a scene with many settings: how its numbers depend on them.
 
@@ -81,19 +71,14 @@ def sweep(
     """
     from atmosbox.file.output_path import unused
     from atmosbox.scene.spelling import assignments
-    from atmosbox.sweep import SweepInterrupted, folder_of, is_taken, plan
+    from atmosbox.sweep import folder_of, is_taken, plan
     from atmosbox.sweep import sweep as run
 
     with prints_to_stderr():
+        fixed = assignments(values or ())
         grid = plan(
-            scene,
-            vary or (),
-            settings=assignments(values or ()),
-            members=members,
-            seed=seed,
-            engine=engine,
-            accuracy=accuracy,
-        )
+            scene, vary or (), settings=fixed, members=members, seed=seed, engine=engine, accuracy=accuracy
+        )  # fmt: skip
     default = for_scene(scene, "-sweep.nc")
     path = netcdf_name(default if out is None else Path(out))
     if out is None and not force:
@@ -103,99 +88,103 @@ def sweep(
     if dry_run:
         _describe(grid, path, as_json=as_json, quiet=quiet)
         return
+    folder = folder_of(path)
+
+    def saved() -> str:
+        count = sum(Path(task.path).exists() for task in grid.tasks(folder))
+        return f"{count} of {grid.runs} runs are saved in {folder}"
+
+    if folder.exists() and not is_taken(path, grid) and not quiet:
+        tell(f"note: {saved()}: going on with the rest")
     try:
         with prints_to_stderr(), progress(grid.scene, quiet=quiet) as show:
-            swept = run(
-                grid,
-                path,
-                jobs=jobs,
-                scheduler=scheduler,
-                force=force,
-                progress=show,
-                note=None if quiet else lambda text: tell(text if text.startswith("warning") else f"note: {text}"),
-                command=typed(ctx),
-            )
-    except SweepInterrupted as stop:
-        tell(f"stopped: {stop.saved} of {grid.runs} runs are saved in {folder_of(path)}, type the same again to go on")
-        raise typer.Exit(stop.exit_code) from stop
-    _say(grid, swept, path, as_json=as_json, quiet=quiet)
-    _judge(grid, swept, path)
+            found = run(grid, path, jobs=jobs, scheduler=scheduler, force=force, progress=show, command=typed(ctx))
+    except KeyboardInterrupt:
+        tell(f"{saved()}: type the same again to go on")
+        raise
+    _say(grid, found, path, as_json=as_json, quiet=quiet)
 
 
 def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
     """Print which runs the sweep would make."""
-    names = [axis.name for axis in grid.axes]
+    points = range(1, len(grid.prepared) + 1)
     if as_json:
-        points = [dict(grid.values(point)) for point in range(1, grid.points + 1)]
         facts = {"dry_run": True, "scene": grid.scene, "title": grid.title, "file": str(path), "runs": grid.runs}
-        say_json({**facts, "members": grid.members, "settings": dict(grid.defaults), "points": points})
-        return
-    if quiet:
-        say(str(path))
-        return
-    rows = [list(grid.typed(point)) for point in range(1, grid.points + 1)]
-    lines = [
-        f"{grid.scene}: {grid.title}",
-        "",
-        *table(names, rows, width()),
-        "",
-        f"runs: {grid.runs}, {grid.members} at each of {grid.points} points",
-        f"file: {path} (not written: this is a dry run)",
-    ]
-    say("\n".join(lines))
-
-
-def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
-    """Print the results."""
-    from atmosbox.simulation.runner import LEDGER_LIMIT
-    from atmosbox.text.report import ledger_line, next_command
-
-    if as_json:
-        made = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "computed": swept.computed}
-        failed = [{"point": point, "member": member, "reason": why} for point, member, why in swept.failures]
-        say_json({**made, "failed": failed, "ledger": swept.ledger, "points": records(grid, swept.dataset)})
+        facts |= {"members": grid.members, "settings": dict(grid.defaults)}
+        say_json({**facts, "points": [grid.values(point) for point in points]})
     elif quiet:
         say(str(path))
     else:
-        said = lines(grid, swept.dataset, width())
-        said += ["", ledger_line(swept.ledger, LEDGER_LIMIT), f"file: {path}", f"next: {next_command('plot', path)}"]
-        say("\n".join(said))
+        lines = [f"{grid.scene}: {grid.title}", "", *table(list(grid.vary), [*map(grid.typed, points)], width()), ""]
+        lines += [f"runs: {grid.runs}, {grid.members} at each of {len(points)} points"]
+        say("\n".join([*lines, f"file: {path} (not written: this is a dry run)"]))
 
 
-def records(grid: Plan, dataset: xr.Dataset) -> list[dict[str, Any]]:
+def _say(grid: Plan, found: xr.Dataset, path: Path, *, as_json: bool, quiet: bool) -> None:
+    """Print the results, and raise an error if a run has failed or its energy budget is not closed."""
+    from atmosbox.simulation.runner import LEDGER_LIMIT
+    from atmosbox.text.report import ledger_line, next_command
+
+    failed: list[dict[str, Any]] = [
+        {"point": place // grid.members + 1, "member": place % grid.members + 1, "reason": str(reason)}
+        for place, reason in enumerate(found.member_reason.values.flat if "member_reason" in found else ())
+        if reason
+    ]
+    ledger = float(found.member_ledger.max().fillna(0.0))
+    if as_json:
+        about = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "failed": failed, "ledger": ledger}
+        say_json({**about, "points": records(grid, found)})
+    elif quiet:
+        say(str(path))
+    else:
+        last = [ledger_line(ledger, LEDGER_LIMIT), f"file: {path}", f"next: {next_command('plot', path)}"]
+        say("\n".join([*lines(grid, found, width()), "", *last]))
+    if not ledger <= LEDGER_LIMIT:
+        raise PhysicsError(
+            f"The energy budget of a run of this sweep is off by {ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
+            f"see member_ledger in {path}."
+        )
+    if failed:
+        named = [
+            f"{' '.join(grid.typed(each['point']))}, member {each['member']} ({each['reason'].rstrip('.')})"
+            for each in failed[:_MOST_NAMED]
+        ]
+        named += [f"and {len(failed) - len(named)} more"] if len(failed) > len(named) else []
+        why = f"{len(failed)} of {grid.runs} runs failed and are missing in {path}, see member_reason there"
+        raise EngineError(f"{why}: {'; '.join(named)}.")
+
+
+def records(grid: Plan, found: xr.Dataset) -> list[dict[str, Any]]:
     """Return one record for each point, in SI units, for JSON."""
-    names = _headlines(dataset)
     made = []
-    for point in range(1, grid.points + 1):
-        record: dict[str, Any] = {"settings": grid.values(point), "headlines": {}}
-        for name in names:
+    for place in range(len(grid.prepared)):
+        headlines = {}
+        for name in _headlines(found):
             parts = {"mean": name, "standard_error": f"{name}_se", "theory": f"{name}_theory"}
-            record["headlines"][name] = {
-                part: float(dataset[key].values.ravel()[point - 1]) for part, key in parts.items() if key in dataset
-            } | {"unit": str(dataset[name].attrs["units"])}
-        made.append(record)
+            numbers = {part: float(found[key].values.flat[place]) for part, key in parts.items() if key in found}
+            headlines[name] = numbers | {"unit": str(found[name].attrs["units"])}
+        made.append({"settings": grid.values(place + 1), "headlines": headlines})
     return made
 
 
-def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
+def lines(grid: Plan, found: xr.Dataset, columns: int) -> list[str]:
     """Return a table for each headline: at each point the mean of the members with its standard error, and theory."""
     from atmosbox.scene.conversion import from_si
     from atmosbox.sweep import FEWEST
 
     made = []
-    for name in _headlines(dataset):
-        unit = str(dataset[name].attrs["display_units"])
-        known = f"{name}_theory" in dataset
-        parts = [name, f"{name}_se", *([f"{name}_theory"] if known else [])]
+    for name in _headlines(found):
+        unit = str(found[name].attrs["display_units"])
+        theory = f"{name}_theory" in found
         rows = []
-        for point, found in enumerate(zip(*(dataset[part].values.ravel() for part in parts), strict=True), start=1):
-            mean, error = from_si(float(found[0]), unit), from_si(float(found[1]), unit, difference=True)
-            cells = [measurement(mean, error) if math.isfinite(mean) else "no run"]
-            cells += [number(from_si(float(answer), unit)) for answer in found[2:]]
-            rows.append([*grid.typed(point), *cells])
-        shown = "" if unit == "1" else f" [{unit}]"
-        made += [f"{dataset[name].attrs['long_name']}{shown}"]
-        made += [*table([*(axis.name for axis in grid.axes), "measured", *["theory"] * known], rows, columns), ""]
+        for place in range(len(grid.prepared)):
+            mean, error = (float(found[part].values.flat[place]) for part in (name, f"{name}_se"))
+            shown = measurement(from_si(mean, unit), from_si(error, unit, difference=True))
+            rows.append([*grid.typed(place + 1), shown if math.isfinite(mean) else "no run"])
+            if theory:
+                rows[-1].append(number(from_si(float(found[f"{name}_theory"].values.flat[place]), unit)))
+        made += [f"{found[name].attrs['long_name']}{'' if unit == '1' else f' [{unit}]'}"]
+        made += [*table([*grid.vary, "measured", *["theory"] * theory], rows, columns), ""]
     words = "measured: a single run ± its standard error"
     if grid.members > 1:
         source = "own error bars" if grid.members < FEWEST else "scatter"
@@ -203,33 +192,8 @@ def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
     return [*made, *wrapped(words, columns)]
 
 
-def _headlines(dataset: xr.Dataset) -> list[str]:
+def _headlines(found: xr.Dataset) -> list[str]:
+    """Return the names of the headlines, in the order of the scene."""
     from atmosbox.file.provenance import parameters
 
-    return [str(name) for name in parameters(dataset)["sweep"]["headlines"]]
-
-
-def _judge(grid: Plan, swept: Swept, path: Path) -> None:
-    """Raise the error of the sweep, if any run has failed."""
-    from atmosbox.simulation.runner import LEDGER_LIMIT
-
-    failed: AtmosboxError | None = None
-    if swept.failures:
-        named = [
-            f"{grid.named(point)}, member {member} ({why.rstrip('.')})"
-            for point, member, why in swept.failures[:_MOST_NAMED]
-        ]
-        more = len(swept.failures) - len(named)
-        named += [f"and {more} more, see member_reason in the file"] if more else []
-        failed = EngineError(
-            f"{len(swept.failures)} of {grid.runs} runs failed and are missing in {path}: {'; '.join(named)}."
-        )
-    if not swept.ledger <= LEDGER_LIMIT:
-        if failed is not None:
-            tell(f"error: {failed.said(on_command_line)}")
-        raise PhysicsError(
-            f"The energy budget of a run of this sweep is off by {swept.ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
-            f"see member_ledger in {path}."
-        )
-    if failed is not None:
-        raise failed
+    return [str(name) for name in parameters(found)["sweep"]["headlines"]]

@@ -141,24 +141,22 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             tell("error: This computer has not enough memory for it: give fewer molecules.")
             raise typer.Exit(1) from error
         except Exception as error:
-            if kwargs.get("verbose"):
-                tell(traceback.format_exc())
-            again = "" if kwargs.get("verbose") else "; --verbose shows where"
-            read = [str(file) for name in ("file", "files", "resume", "source") for file in _listed(kwargs.get(name))]
-            if read:  # the file may have the names that atmosbox writes, but values that it never writes
-                named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
-                what = f"it is not as atmosbox has written it, or this is a bug{again}"
-                tell(f"error: {named} cannot be used ({_reason(error)}): {what}.")
-                raise typer.Exit(FileError.exit_code) from error
             from atmosbox import scenarios
 
+            if kwargs.get("verbose"):
+                tell(traceback.format_exc())
+            read = [str(file) for name in ("file", "files", "resume", "source") for file in _listed(kwargs.get(name))]
             scene = str(kwargs.get("scene") or "")
-            where = scenarios.place(error) or (scene if scene.endswith(".py") else None)
-            if where is not None:
-                failed = f"{shown(where, longest=4096)} cannot be run ({_reason(error)})"
-                tell(f"error: {failed}: correct it and run it again{again}.")
-                raise typer.Exit(FileError.exit_code) from error
-            tell(f"error: This is a bug in atmosbox ({_reason(error)}){again}.")
-            raise typer.Exit(1) from error
+            own = scenarios.place(error) or (scene if scene.endswith(".py") else None)
+            said = f"This is a bug in atmosbox ({_reason(error)})"
+            if read:  # the file may have the names that atmosbox writes, but values that it never writes
+                named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
+                said = (
+                    f"{named} cannot be used ({_reason(error)}): it is not as atmosbox has written it, or this is a bug"
+                )
+            elif own is not None:
+                said = f"{shown(own, longest=4096)} cannot be run ({_reason(error)}): correct it and run it again"
+            tell(f"error: {said}{'' if kwargs.get('verbose') else '; --verbose shows where'}.")
+            raise typer.Exit(FileError.exit_code if read or own is not None else 1) from error
 
     return wrapper

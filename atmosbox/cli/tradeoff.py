@@ -97,21 +97,14 @@ def rows(found: xr.Dataset) -> list[dict[str, object]]:
     for k, label in enumerate(found.rung.values):
         record: dict[str, object] = {"run": str(label), "engine": str(found.engine.values[k])}
         record["settings"] = str(found.settings.values[k])
-        record |= {name: _plain(found[name].values[k]) for name in _COLUMNS}
+        record |= {name: found[name].values[k].item() for name in _COLUMNS}
         for q, name in enumerate(found.quantity.values):
             unit = "K" if str(found.unit.values[q]) == "K" else "share"
             for part in ("bias", "bias_se", "noise"):
-                record[f"{name}_{part}_{unit}"] = _plain(found[part].values[k, q])
+                record[f"{name}_{part}_{unit}"] = found[part].values[k, q].item()
         record["left_out"] = str(found.left_out.values[k])
         made.append(record)
     return made
-
-
-def _plain(value: float) -> float | int | None:
-    """Return a number as JSON can hold it."""
-    if not math.isfinite(value):
-        return None
-    return int(value) if float(value).is_integer() and abs(value) < 1e9 else float(value)
 
 
 def as_csv(found: xr.Dataset) -> str:
@@ -120,7 +113,8 @@ def as_csv(found: xr.Dataset) -> str:
     stream = io.StringIO()
     writer = csv.DictWriter(stream, list(records[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(records)
+    for record in records:
+        writer.writerow({name: "" if value != value else value for name, value in record.items()})  # NaN is left out
     return stream.getvalue()
 
 

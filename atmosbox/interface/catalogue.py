@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import html
 import os
 from collections.abc import Sequence
+
+from atmosbox.interface.notebook import preformatted
 
 __all__ = ["Printed", "scenes"]
 
@@ -35,7 +36,7 @@ class Printed(tuple[str, ...]):
 
     def _repr_html_(self) -> str:
         """Return the table for a notebook."""
-        return f'<pre style="line-height:1.35;overflow-x:auto">{html.escape(repr(self))}</pre>'
+        return preformatted(repr(self))
 
 
 def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import base64
-import html
 import os
 from typing import TYPE_CHECKING, Literal
 
 from atmosbox.errors import SettingError
+from atmosbox.interface.notebook import preformatted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,10 +117,8 @@ class Comparison:
     def _repr_html_(self) -> str:
         """Return table and figure."""
         picture = base64.b64encode(self.figure._repr_png_()).decode()  # type: ignore[attr-defined]
-        return (
-            f'<pre style="line-height:1.35;font-size:80%;overflow-x:auto">{html.escape(self.table)}</pre>'
-            f'<img alt="The graphs of the runs, laid over each other." src="data:image/png;base64,{picture}">'
-        )
+        drawn = f'<img alt="The graphs of the runs, laid over each other." src="data:image/png;base64,{picture}">'
+        return preformatted(self.table) + drawn
 
 
 def compare(

@@ -93,7 +93,7 @@ def sweep(
         )
         path = None if out is None else os.fspath(out)
         command = f"atmosbox.sweep({grid.scene!r}, {dict(vary)!r}, members={members})"
-        return conduct(grid, path, jobs=jobs, scheduler=scheduler, force=force, progress=show, command=command).dataset
+        return conduct(grid, path, jobs=jobs, scheduler=scheduler, force=force, progress=show, command=command)
 
 
 def _typed(values: str | Iterable[Any]) -> str:

@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
-__all__ = ["in_notebook", "progress_bar"]
+__all__ = ["in_notebook", "preformatted", "progress_bar"]
 
 Show = Callable[[float, str], None]
 
@@ -24,6 +24,17 @@ def in_notebook() -> bool:
     ipython = sys.modules.get("IPython")  # a notebook has imported IPython
     shell = ipython.get_ipython() if ipython is not None else None
     return getattr(shell, "kernel", None) is not None
+
+
+def preformatted(text: str) -> str:
+    """Return text as HTML that keeps its columns.
+
+    Examples
+    --------
+    >>> preformatted("p < 1 bar").partition(">")[2]
+    'p &lt; 1 bar</pre>'
+    """
+    return f'<pre style="line-height:1.35;font-size:90%;overflow-x:auto">{html.escape(text)}</pre>'
 
 
 @contextlib.contextmanager

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import html
-from typing import TYPE_CHECKING, NamedTuple
-
 import numpy as np
 import xarray as xr
 
-if TYPE_CHECKING:
-    from atmosbox.scene.headline import Headline
+from atmosbox.interface.notebook import preformatted
 
 __all__ = ["RunDataset", "as_run"]
 
@@ -33,33 +29,14 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
         """Return the headline table, followed by the text of xarray for the dataset."""
-        from atmosbox.text.report import headline_lines
-
         dataset = xr.Dataset.__repr__(self).replace("<xarray.RunDataset>", "<xarray.Dataset>", 1)
-        said = _said(self)
-        if said is None:
-            return dataset
-        return "\n".join([said.head, "", *headline_lines(said.headlines, _WIDTH), "", *said.notes, "", dataset])
+        return "\n".join([*_results(self), dataset])
 
     def _repr_html_(self) -> str:
         """Return the same for a notebook."""
-        from atmosbox.text.report import headline_tables
-
         dataset = str(xr.Dataset._repr_html_(self)).replace("xarray.RunDataset", "xarray.Dataset")
-        said = _said(self)
-        if said is None:
-            return dataset
-        tables = "".join(_table(*each) for each in headline_tables(said.headlines))
-        below = "<br>".join(map(html.escape, said.notes))
-        return f"<div><strong>{html.escape(said.head)}</strong>{tables}<small>{below}</small></div>{dataset}"
-
-
-class _Said(NamedTuple):
-    """The texts that are shown above the variables of a run."""
-
-    head: str
-    headlines: tuple[Headline, ...]
-    notes: list[str]
+        results = _results(self)
+        return (preformatted("\n".join(results)) if results else "") + dataset
 
 
 def as_run(dataset: xr.Dataset) -> RunDataset:
@@ -69,35 +46,19 @@ def as_run(dataset: xr.Dataset) -> RunDataset:
     return made  # type: ignore[return-value]
 
 
-def _table(header: list[str], rows: list[list[str]], notes: list[str]) -> str:
-    """Return a table as HTML, with its sentences below."""
-    lines = [_row("th", header), *(_row("td", row) for row in rows)] if rows else []
-    below = "<br>".join(map(html.escape, notes))
-    return f'<table style="text-align:left;font-size:90%">{"".join(lines)}</table><small>{below}<br></small>'
-
-
-def _row(tag: str, cells: list[str]) -> str:
-    """Return a row of a table as HTML; only the first column may be broken into lines."""
-    made = []
-    for number, cell in enumerate(cells):
-        style = "text-align:left" + (";white-space:nowrap" if number else "")
-        made.append(f'<{tag} style="{style}">{html.escape(cell)}</{tag}>')
-    return f"<tr>{''.join(made)}</tr>"
-
-
-def _said(dataset: xr.Dataset) -> _Said | None:
-    """Return the texts to show above the variables of a run; None if the dataset is not a single run."""
+def _results(dataset: xr.Dataset) -> list[str]:
+    """Return the lines that are shown above the variables of a run; none if the dataset is not a single run."""
     from atmosbox.errors import AtmosboxError
     from atmosbox.file.provenance import parameters
     from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of
-    from atmosbox.text.report import ledger_line
+    from atmosbox.text.report import headline_lines, ledger_line
 
     if "atmosbox_headlines" not in dataset.attrs or {"member", "rung"} & set(dataset.dims):
-        return None
+        return []
     try:
         made, headlines = parameters(dataset), headlines_of(dataset)
     except AtmosboxError:  # a part of a run, such as a single variable of it, has no headlines
-        return None
+        return []
     settings = made.get("settings", {})
     facts = [f"{settings['molecules']:,} molecules"] if isinstance(settings.get("molecules"), int) else []
     facts += [f"seed {settings['seed']}"] if "seed" in settings else []
@@ -107,4 +68,4 @@ def _said(dataset: xr.Dataset) -> _Said | None:
     notes = [] if status == "complete" else [f"the run is {status}"]
     if dataset.sizes.get("elapsed_time", 0) and "ledger_residual" in dataset:
         notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values)), LEDGER_LIMIT))
-    return _Said(head, tuple(headlines), notes)
+    return [head, "", *headline_lines(headlines, _WIDTH), "", *notes, ""]

@@ -1,59 +1,60 @@
-"""A sweep from its first run to its file: each run has a file of its own, and runs that have one are not repeated."""
+"""How a sweep runs: each run has a file of its own, and runs that have one are not repeated.
+
+Runs are made in this process, in processes of this machine, or on a Dask cluster.
+"""
 
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
+import signal
+import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing, contextmanager
+import threading
+import warnings
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent import futures
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, suppress
+from multiprocessing import connection
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import xarray as xr
 
-from atmosbox.errors import FileError, Option, SettingError, shown
-from atmosbox.file.checkpoint import Checkpoint
-from atmosbox.file.netcdf import read
+from atmosbox.errors import AtmosboxError, EngineError, FileError, Option, SettingError, shown
+from atmosbox.file.netcdf import read, write
 from atmosbox.file.output_lock import ANOTHER_NAME
-from atmosbox.file.output_path import part_path, write_failure, write_whole
-from atmosbox.file.provenance import history_line
+from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.scene.settings import Parameter
-from atmosbox.simulation.recording import uninterrupted
-from atmosbox.sweep import workers
-from atmosbox.sweep.plan import Plan
+from atmosbox.simulation.preparation import prepare
+from atmosbox.simulation.runner import execute
+from atmosbox.sweep.plan import Plan, Task
 from atmosbox.sweep.result import join, row
 
-__all__ = ["SweepInterrupted", "Swept", "folder_of", "is_taken", "sweep"]
+__all__ = ["cores", "folder_of", "is_taken", "sweep"]
 
 REQUEST = "sweep.json"
 """The file in the folder of a sweep that tells which sweep it is."""
-_JOBS = Parameter("jobs", "1", workers.cores(), 1, 4096, kind="int", given_as=Option)
-
-Progress = Callable[[float, str], None]
-
-
-class Swept(NamedTuple):
-    """The result of a sweep."""
-
-    dataset: xr.Dataset
-    failures: tuple[tuple[int, int, str], ...]
-    """Point, member and reason of every run that failed."""
-    ledger: float
-    """The largest residual of the energy budget of any run."""
-    computed: int
-    """Number of runs that this call has computed."""
-    recalled: int
-    """Number of runs that an earlier call had saved."""
+_JOBS = Parameter("jobs", "1", 8, 1, 4096, kind="int", given_as=Option)
+PATIENCE = 10.0
+"""Longest time to wait for an answer of the scheduler, and then for a first worker [s]."""
 
 
-class SweepInterrupted(KeyboardInterrupt):
-    """A sweep was stopped by Ctrl-C; ``saved`` is the number of runs that are complete."""
+Done: TypeAlias = tuple[Task, str, list[str]]
+"""A run that has ended: why it failed, empty if its file is written, and its warnings."""
 
-    def __init__(self, saved: int, exit_code: int = 130) -> None:
-        super().__init__("the sweep was interrupted")
-        self.saved = saved
-        self.exit_code = exit_code
+
+def cores() -> int:
+    """Return the number of cores that this process may use.
+
+    Examples
+    --------
+    >>> cores() >= 1
+    True
+    """
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def folder_of(path: str | os.PathLike[str]) -> Path:
@@ -75,15 +76,14 @@ def sweep(
     jobs: int | str | None = None,
     scheduler: str | None = None,
     force: bool = False,
-    progress: Progress | None = None,
-    note: Callable[[str], None] | None = None,
+    progress: Callable[[float, str], None] | None = None,
     command: str = "",
-) -> Swept:
+) -> xr.Dataset:
     """Run all members of a sweep, on the cores of this machine or on a cluster, and join them.
 
-    Every run writes its own netCDF file, ``NAME/POINT-MEMBER.nc`` beside NAME.nc, and saves its state on the way. The
-    same call goes on where an earlier one stopped, for whatever reason, and the results are the same, bit for bit. With
-    more members, the runs that are there are used.
+    Every run writes its own netCDF file, ``NAME/POINT-MEMBER.nc`` beside NAME.nc. The same call goes on where an
+    earlier one stopped, for whatever reason: a run that has its file is not repeated, and the results are the same, bit
+    for bit. With more members, the runs that are there are used.
 
     Parameters
     ----------
@@ -99,21 +99,19 @@ def sweep(
     force
         Whether the file and the runs of another sweep may be replaced.
     progress
-        Called with the share that is done and a short text on the present step.
-    note
-        Called with remarks: how many runs are taken from an earlier call, and the warnings of runs.
+        Called with the share of the runs that have ended, and a word on what happens.
     command
         The command that the user typed, for the history in the file.
 
     Returns
     -------
-    Swept
-        The dataset, and the runs that failed.
+    xarray.Dataset
+        The means of all headlines, what each run measured, and which runs failed, see `atmosbox.sweep.result.join`.
 
     Raises
     ------
-    SweepInterrupted
-        After Ctrl-C.
+    KeyboardInterrupt
+        After Ctrl-C; the runs that have ended are saved.
     AtmosboxError
         If a file cannot be written, the folder holds another sweep, or the workers cannot be reached.
 
@@ -121,97 +119,73 @@ def sweep(
     --------
     >>> from atmosbox.simulation.runner import LEDGER_LIMIT
     >>> from atmosbox.sweep.plan import plan
-    >>> discs = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0})
-    >>> swept = sweep(discs, jobs=1)
-    >>> dict(swept.dataset.sizes), swept.failures, swept.ledger < LEDGER_LIMIT
-    ({'molecules': 2, 'member': 1}, (), True)
+    >>> swept = sweep(plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}), jobs=1)
+    >>> dict(swept.sizes), bool(swept.member_ledger.max() < LEDGER_LIMIT)
+    ({'molecules': 2, 'member': 1}, True)
     """
-    processes = workers.cores() if jobs is None else int(_JOBS.parse(jobs))
-    if jobs is not None and scheduler is not None:
-        raise SettingError("jobs", jobs, "is for this machine, and a scheduler for another", "leave one of them out")
-    tell, say = progress or (lambda share, word: None), note or (lambda text: None)
-    with _folder(plan, out, force) as (folder, checkpoint):
-        tasks = plan.tasks(folder)
-        waiting = [task for task in tasks if not os.path.exists(task.path)]
-        recalled = len(tasks) - len(waiting)
-        begun = sum(part_path(task.path).exists() for task in waiting)
-        if recalled or begun:
-            also = f" and {begun} begun" if begun else ""
-            say(f"{recalled} of {plan.runs} runs are saved in {folder}{also}: going on with the rest")
-        failed: dict[tuple[int, int], str] = {}
-        warned: set[str] = set()
-        ended = recalled
-
-        def watch(share: float, word: str) -> None:
-            tell(min((ended + share) / plan.runs, 1.0), word)
-
-        number = min(processes, len(waiting))
-        runs = (
-            workers.on_cluster(waiting, scheduler, watch)
-            if scheduler is not None
-            else workers.processes(waiting, number, watch)
-            if number > 1
-            else workers.here(waiting, watch)
-        )
-        try:
-            with closing(runs):
-                for done in runs:
-                    ended += 1
-                    if done.reason:
-                        failed[done.task.point, done.task.member] = done.reason
-                    for text in set(done.warnings) - warned:
-                        warned.add(text)
-                        say(f"warning: {text}")
-                    watch(0.0, "running")
-        except KeyboardInterrupt as stop:
-            saved = sum(os.path.exists(task.path) for task in tasks)
-            raise SweepInterrupted(saved, getattr(stop, "exit_code", 130)) from None
-        line = history_line(command or f"atmosbox.sweep.sweep({plan.scene!r}, ...)")
-        with uninterrupted():
-            rows = {(task.point, task.member): row(read(task.path)) for task in tasks if os.path.exists(task.path)}
-            empty = "The run was too short for any of its headlines to be measured."
-            failed |= {key: empty for key, found in rows.items() if not found.attrs["names"]}
-            if out is not None and os.path.exists(out):
-                line = f"{read(out).attrs['history']}\n{line}"
-            dataset = join(plan, rows, failed, line)
-            if checkpoint is not None:
-                checkpoint.finish(dataset)
-    tell(1.0, "done")
-    ledger = float(dataset["member_ledger"].max(skipna=True).fillna(0.0))
-    failures = tuple((*key, why) for key, why in sorted(failed.items()))
-    return Swept(dataset, failures, ledger, len(waiting), recalled)
-
-
-@contextmanager
-def _folder(plan: Plan, out: str | os.PathLike[str] | None, force: bool) -> Iterator[tuple[Path, Checkpoint | None]]:
-    """Yield the folder for the runs, and the file to write; without a file, a folder that is removed at the end."""
     if out is None:
         with tempfile.TemporaryDirectory(prefix="atmosbox-sweep-") as temporary:
-            yield Path(temporary), None
+            path = Path(temporary, "sweep.nc")
+            return sweep(plan, path, jobs=jobs, scheduler=scheduler, progress=progress, command=command)
+    if jobs is not None and scheduler is not None:
+        raise SettingError("jobs", jobs, "is for this machine, and a scheduler for another", "leave one of them out")
+    processes = cores() if jobs is None else int(_JOBS.parse(jobs))
+    _take(out, plan.request(), force)
+    tell = progress or (lambda share, word: None)
+    tasks = plan.tasks(folder_of(out))
+    waiting = [task for task in tasks if not os.path.exists(task.path)]
+    failed: dict[tuple[int, int], str] = {}
+    tell(1.0 - len(waiting) / plan.runs, "running")
+    runs: Generator[Done] = (_run(task) for task in waiting)
+    if scheduler is not None:
+        runs = _on_cluster(waiting, scheduler)
+    elif min(processes, len(waiting)) > 1:
+        runs = _in_processes(waiting, processes)
+    with closing(runs):
+        for ended, (task, reason, remarks) in enumerate(runs, plan.runs - len(waiting) + 1):
+            tell(ended / plan.runs, "running")
+            if reason:
+                failed[task.point, task.member] = reason
+            for text in remarks:
+                warnings.warn(text, stacklevel=2)
+    rows = {(task.point, task.member): row(read(task.path)) for task in tasks if os.path.exists(task.path)}
+    empty = "The run was too short for any of its headlines to be measured."
+    failed |= {key: empty for key, found in rows.items() if not found.attrs["names"]}
+    dataset = join(plan, rows, failed, command or f"atmosbox.sweep.sweep({plan.scene!r}, ...)")
+    write(dataset, out, force=True)
+    return dataset
+
+
+def _take(out: str | os.PathLike[str], wanted: Mapping[str, Any], force: bool) -> None:
+    """Make the folder of a sweep, or go on with it if it is of the same sweep; with `force`, take that of another.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written, or the folder holds anything else.
+    """
+    folder = folder_of(out)
+    known = _request_in(folder)
+    check_writable(out, force or known is not None)
+    if known == wanted:
         return
-    path = Path(out)
-    folder = folder_of(path)
-    checkpoint = Checkpoint(path, force=force or (folder / REQUEST).exists())
-    with uninterrupted():
-        checkpoint.load_libraries()
-    checkpoint.begin()
-    try:
-        _take(folder, plan.request(), force)
-        yield folder, checkpoint
-    finally:
-        checkpoint.release()
+    if known is None and os.path.lexists(folder):
+        raise FileError(f"{folder} holds other things than a sweep", "move it, or ", *ANOTHER_NAME)
+    if known is not None and not force:
+        name = next(name for name in [*known, *wanted] if known.get(name) != wanted.get(name))
+        before, now = ("not given" if each.get(name) is None else shown(each[name]) for each in (known, wanted))
+        problem = f"{folder} has the runs of another sweep, with {name} {before} and not {now}"
+        raise FileError(problem, *ANOTHER_NAME, ", or add ", Option("force", True), " to replace them")
+    folder.mkdir(exist_ok=True)
+    for old in folder.glob("*.nc"):
+        old.unlink()
+    write_whole(folder / REQUEST, json.dumps(wanted, indent=1).encode())
 
 
 def is_taken(path: Path, plan: Plan) -> bool:
     """Return whether a file, or the folder of its runs, holds anything else than this sweep."""
     folder = folder_of(path)
-    return (path.exists() or folder.exists()) and _request_in(folder) != _plain(plan.request())
-
-
-def _plain(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a request as it comes out of a file."""
-    made: dict[str, Any] = json.loads(json.dumps(dict(request)))
-    return made
+    return (path.exists() or folder.exists()) and _request_in(folder) != plan.request()
 
 
 def _request_in(folder: Path) -> dict[str, Any] | None:
@@ -223,38 +197,103 @@ def _request_in(folder: Path) -> dict[str, Any] | None:
     return made
 
 
-def _take(folder: Path, request: Mapping[str, Any], force: bool) -> None:
-    """Make the folder of a sweep, or go on with it if it is of the same sweep.
+def _run(task: Task) -> Done:
+    """Run one member and write its file, whole or not at all; no other can be saved either if that fails."""
+    reason = ""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            if not os.path.exists(task.path):  # a Dask worker that is killed may leave a file and no answer
+                write(execute(prepare(**task.asked)).dataset, task.path, force=True)
+        except FileError:
+            raise
+        except Exception as error:
+            reason = str(error) if isinstance(error, AtmosboxError) else f"{type(error).__name__}: {error}"
+    return task, " ".join(reason.split()), sorted({str(each.message) for each in caught})
 
-    Raises
-    ------
-    FileError
-        If it holds anything else; with `force`, the runs of another sweep are removed.
+
+def _as_completed(pool: futures.Executor, tasks: Sequence[Task]) -> Generator[Done]:
+    """Submit all runs, and yield each as it ends; one that kills its worker again and again has failed."""
+    running = {pool.submit(_run, task): task for task in tasks}
+    for future in futures.as_completed(running):
+        error = future.exception()
+        if error is None or isinstance(error, FileError | BrokenProcessPool):
+            yield future.result()
+        else:
+            yield running[future], f"Its worker failed ({type(error).__name__}: {error}).", []
+
+
+def _in_processes(tasks: Sequence[Task], jobs: int) -> Generator[Done]:
+    """Run the members in processes of this machine.
+
+    If a process dies, the runs that were under way are tried again, one at a time: the one whose process dies once
+    more counts as failed.
     """
-    wanted, known = _plain(request), _request_in(folder)
-    if known == wanted:
-        return
-    if known is None and (os.path.lexists(folder) and not (folder.is_dir() and not any(folder.iterdir()))):
-        raise FileError(f"{folder} holds other things than a sweep", "move it, or ", *ANOTHER_NAME)
-    if known is not None and not force:
-        raise FileError(
-            f"{folder} has the runs of another sweep, {_difference(known, wanted)}",
-            *ANOTHER_NAME,
-            ", or add ",
-            Option("force", True),
-            " to replace them",
-        )
+    waiting, suspects = list(tasks), 0
+    while waiting:
+        batch = waiting[:1] if suspects else waiting
+        before = set(multiprocessing.active_children())
+        pool = futures.ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=_begin)
+        try:
+            _check(pool)
+            for done in _as_completed(pool, batch):
+                waiting.remove(done[0])
+                yield done
+        except BrokenProcessPool:
+            if suspects:
+                yield waiting.pop(0), "Its process died twice: memory may be short, give fewer jobs.", []
+            suspects = suspects or jobs + 1
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - before:
+                process.kill()
+                process.join()
+        suspects = max(suspects - 1, 0)
+
+
+def _check(pool: futures.Executor) -> None:
+    """Refuse to go on if a process that has nothing to do yet dies."""
     try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise write_failure(error, folder) from error
-    for old in folder.glob("*.nc"):
-        old.unlink()
-    write_whole(folder / REQUEST, json.dumps(wanted, indent=1).encode())
+        pool.submit(cores).result()
+    except BrokenProcessPool:
+        remedy = 'in a script of your own, put the call below if __name__ == "__main__", or give '
+        raise EngineError("The processes of the sweep cannot begin", remedy, Option("jobs", 1)) from None
 
 
-def _difference(saved: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
-    """Return in words the first part in which two sweeps differ."""
-    name = next(name for name in [*saved, *asked] if saved.get(name) != asked.get(name))
-    before, now = ("not given" if each.get(name) is None else shown(each[name]) for each in (saved, asked))
-    return f"with {name} {before} and not {now}"
+def _begin() -> None:
+    """Prepare a process: Ctrl-C is handled by the first process, and this one ends with it, for whatever reason."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.stdout = sys.stderr  # output of a user's scene must not mix with results
+
+    def end_with_parent() -> None:
+        parent = multiprocessing.parent_process()
+        if parent is not None:
+            connection.wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
+
+
+def _on_cluster(tasks: Sequence[Task], address: str) -> Generator[Done]:
+    """Run the members on the workers of a Dask cluster; a run whose worker dies is given to another worker."""
+    try:
+        from distributed import Client
+
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (ImportError, OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
+        problem = f"cannot be reached ({' '.join(str(error).split()) or type(error).__name__})"
+        fix = "type pip install 'atmosbox[cluster]', then dask scheduler, and give the address that it names"
+        raise SettingError("scheduler", address, problem, fix) from error
+    with client:
+        with suppress(TimeoutError):
+            client.wait_for_workers(1, timeout=PATIENCE)
+        found = client.get_versions(packages=["atmosbox"])
+        here, *there = (str(each["packages"]["atmosbox"]) for each in (found["client"], *found["workers"].values()))
+        if set(there) != {here}:
+            problem = f"needs workers with atmosbox {here}, and has {', '.join(sorted(set(there))) or 'none'}"
+            fix = f"type pip install atmosbox=={here}, then dask worker {address} --nworkers auto --nthreads 1"
+            raise SettingError("scheduler", address, problem, fix)
+        try:
+            yield from _as_completed(client.get_executor(pure=False), tasks)
+        except futures.CancelledError:
+            raise EngineError(f"The scheduler {address} was lost: type the same again to go on.") from None

@@ -1,30 +1,126 @@
-"""The grid of a sweep: its points, its members, and the seed of each."""
+"""What a sweep runs: the settings that vary, the points of their grid, its members, and the seed of each."""
 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from atmosbox import scenarios
-from atmosbox.errors import Option, Setting, SettingError
-from atmosbox.scene.settings import Parameter, Value, by_name
+from atmosbox.errors import Option, Setting, SettingError, UnitError, UnknownSettingError
+from atmosbox.scene.conversion import from_si, to_si
+from atmosbox.scene.settings import Parameter, SceneSettings, Value, by_name
+from atmosbox.scene.spelling import field_name
 from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.simulation.restart import described
-from atmosbox.sweep.axis import Axis, parse_vary
-from atmosbox.sweep.member import Task
 
-__all__ = ["MOST_RUNS", "Plan", "member_seed", "plan"]
+__all__ = ["MOST_RUNS", "Plan", "Task", "member_seed", "parse_vary", "plan"]
 
 MOST_RUNS = 100_000
 """Greatest number of runs of one sweep."""
 _MEMBERS = Parameter("members", "1", 8, 1, 1_000_000, kind="int", given_as=Option)
+
+
+def parse_vary(items: Iterable[str], settings: type[SceneSettings]) -> dict[str, tuple[Value, ...]]:
+    """Return the settings that vary, from the texts after each ``--vary``.
+
+    Parameters
+    ----------
+    items
+        ``name=a:b:n`` for n values from a to b with equal differences, ``name=a:b:nlog`` for n values with equal
+        ratios, or ``name=x,y,z`` for these values. Numbers may have units as after ``--set``.
+    settings
+        The settings of the scene.
+
+    Returns
+    -------
+    dict
+        The values of each setting in its documented unit: numbers in ascending order, words and switches as given.
+
+    Raises
+    ------
+    UnitError
+        If a number or its unit cannot be understood.
+    SettingError
+        If a text has none of these forms, a value is not allowed, or a setting varies twice.
+
+    Examples
+    --------
+    >>> from atmosbox import scenarios
+    >>> parse_vary(["molecules=100:10000:3log", "start=equal,maxwell"], scenarios.load("temperature").Settings)
+    {'molecules': (100, 1000, 10000), 'start': ('equal', 'maxwell')}
+    """
+    parameters = {p.name: p for p in settings.describe()}
+    made: dict[str, tuple[Value, ...]] = {}
+    for item in items:
+        name, _, text = (part.strip() for part in item.partition("="))
+        name = field_name(name)
+        if not (name and text):
+            raise SettingError("vary", item, "has no name or no values", Option("vary", {name or "name": "a:b:n"}))
+        if name == "seed":
+            raise SettingError("seed", text, "is what the members vary already", Option("members", 8), " instead")
+        if name in made:
+            raise SettingError(name, text, "is varied twice", Option("vary", {name: None}), " once")
+        try:
+            by_name({name: text}, parameters)  # raises the error that names the most similar setting
+            made[name] = _values(text, parameters[name])
+        except UnknownSettingError as error:
+            error.instead_of_settings(lambda part: Option("vary", {part.name: str(part.value)}))
+            raise
+        except SettingError as error:
+            error.remedy = _instead(parameters[name])
+            raise
+    return made
+
+
+def _instead(parameter: Parameter) -> tuple[Option | str, ...]:
+    """Return what to give instead."""
+    if parameter.kind in ("int", "float"):
+        example = Option("vary", {parameter.name: "a:b:n"})
+        return example, f" or x,y,z, such as {parameter.typed(parameter.default)}"
+    allowed = ("on", "off") if parameter.kind == "bool" else parameter.choices or (str(parameter.default),)
+    return (Option("vary", {parameter.name: ",".join(allowed)}),)
+
+
+def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
+    """Return the values in a text after "="; numbers in ascending order."""
+    numeric = parameter.kind in ("int", "float")
+    if numeric and ":" in text:
+        return _row(text, parameter)
+    values = [parameter.parse(part.strip()) for part in text.split(",")]
+    if len(set(values)) < len(values):
+        raise SettingError(parameter.name, text, "names a value twice")
+    return tuple(sorted(values, key=float) if numeric else values)
+
+
+def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
+    """Return n values from a to b for the text a:b:n or a:b:nlog."""
+    *ends, last = (part.strip() for part in text.split(":"))
+    count = last.removesuffix("log").rstrip()
+    if len(ends) != 2 or not count.isdecimal() or len(count) > 9:
+        raise UnitError(parameter.name, text, "is neither a:b:n, a:b:nlog nor x,y,z")
+    low, high = sorted(float(parameter.parse(end)) for end in ends)
+    n = int(count)
+    if not 2 <= n <= MOST_RUNS:
+        raise SettingError(parameter.name, text, f"asks for {n} values, and from 2 to {MOST_RUNS} are possible")
+    if not last.endswith("log"):
+        inner = np.linspace(low, high, n)[1:-1].tolist()
+    elif (start := to_si(low, parameter.unit)) > 0.0:
+        inner = np.geomspace(start, to_si(high, parameter.unit), n)[1:-1].tolist()
+        inner = [from_si(value, parameter.unit) for value in inner]
+    else:
+        raise SettingError(parameter.name, text, "begins at or below zero, where no ratios are even")
+    values = [low, *(float(f"{value:.12g}") for value in inner), high]
+    values = [round(value) for value in values] if parameter.kind == "int" else values
+    if len(set(values)) < n:
+        raise SettingError(parameter.name, text, f"has only {len(set(values))} different values, not {n}")
+    return tuple(values)
 
 
 def member_seed(seed: int, point: int, member: int) -> int:
@@ -49,16 +145,28 @@ def member_seed(seed: int, point: int, member: int) -> int:
     return int(state[0]) >> 11
 
 
-@dataclass(frozen=True)
-class Plan:
+class Task(NamedTuple):
+    """One run of a sweep, as it is sent to the process that computes it.
+
+    ``point`` and ``member`` count from 1; ``path`` is the file that the run writes, ``asked`` the arguments of
+    `prepare`.
+    """
+
+    point: int
+    member: int
+    path: str
+    asked: dict[str, Any]
+
+
+class Plan(NamedTuple):
     """A sweep that is checked and ready to run.
 
     Parameters
     ----------
     scene
         The name of the scene, or the path of its file.
-    axes
-        The settings that vary.
+    vary
+        The values of the settings that vary.
     settings
         The settings that were given for all runs, in their documented units.
     members
@@ -68,23 +176,23 @@ class Plan:
     engine, accuracy
         The engine with its options and the accuracy, as they were asked for.
     prepared
-        The scene at each point.
+        The scene at each point; the last of the varied settings varies fastest from point to point.
 
     Examples
     --------
     >>> grid = plan("temperature", ["temperature=0degC:40degC:3", "molecules=100,200"], members=4)
-    >>> grid.shape, grid.runs, grid.values(2)
-    ((3, 2), 24, {'temperature': 0.0, 'molecules': 200})
+    >>> grid.runs, grid.values(2)
+    (24, {'temperature': 0.0, 'molecules': 200})
     """
 
     scene: str
-    axes: tuple[Axis, ...]
+    vary: Mapping[str, tuple[Value, ...]]
     settings: Mapping[str, Value]
     members: int
     seed: int
     engine: str | None
     accuracy: str | None
-    prepared: list[Prepared] = field(default_factory=list)
+    prepared: tuple[Prepared, ...]
 
     @property
     def title(self) -> str:
@@ -92,81 +200,56 @@ class Plan:
         return str(getattr(self.prepared[0].module, "title", self.scene))
 
     @property
-    def shape(self) -> tuple[int, ...]:
-        """Number of values of each setting that varies."""
-        return tuple(len(axis.values) for axis in self.axes)
-
-    @property
-    def points(self) -> int:
-        """Number of points of the grid."""
-        return math.prod(self.shape)
+    def parameters(self) -> dict[str, Parameter]:
+        """The settings of the scene as they were declared."""
+        return {p.name: p for p in self.prepared[0].settings.describe()}
 
     @property
     def runs(self) -> int:
         """Number of runs."""
-        return self.points * self.members
-
-    @property
-    def engines(self) -> tuple[str, ...]:
-        """The engine with its options at each point."""
-        return tuple(str(each.engine) for each in self.prepared)
+        return len(self.prepared) * self.members
 
     @property
     def defaults(self) -> dict[str, Value]:
         """All settings that do not vary, in their documented units."""
         found = {**self.prepared[0].settings.as_dict(), "seed": self.seed}
-        return {name: value for name, value in found.items() if name not in (axis.name for axis in self.axes)}
+        return {name: value for name, value in found.items() if name not in self.vary}
 
     def values(self, point: int) -> dict[str, Value]:
         """Return the values of the varied settings at a point; points count from 1."""
-        place = np.unravel_index(point - 1, self.shape)
-        return {axis.name: axis.values[int(k)] for axis, k in zip(self.axes, place, strict=True)}
+        settings = self.prepared[point - 1].settings.as_dict()
+        return {name: settings[name] for name in self.vary}
 
-    def typed(self, point: int) -> tuple[str, ...]:
-        """Return the values of the varied settings at a point, as they are typed."""
-        return tuple(
-            axis.parameter.typed(value) for axis, value in zip(self.axes, self.values(point).values(), strict=True)
-        )
-
-    def named(self, point: int) -> str:
-        """Return a point as text.
+    def typed(self, point: int) -> list[str]:
+        """Return the values of the varied settings at a point, as they are typed.
 
         Examples
         --------
-        >>> plan("temperature", ["temperature=0degC,25degC"]).named(2)
-        'temperature=25degC'
+        >>> plan("temperature", ["temperature=0degC,25degC"]).typed(2)
+        ['25degC']
         """
-        return ", ".join(f"{axis.name}={text}" for axis, text in zip(self.axes, self.typed(point), strict=True))
+        return [self.parameters[name].typed(value) for name, value in self.values(point).items()]
 
     def tasks(self, folder: Path) -> list[Task]:
         """Return the runs in the order in which they begin: the first member of every point, then the second."""
-        own = self.scene not in scenarios.names()
-        scene = os.path.abspath(self.scene) if own else self.scene
-        return [
-            Task(
-                point,
-                member,
-                scene,
-                {**self.settings, **self.values(point), "seed": member_seed(self.seed, point, member)},
-                self.engine,
-                self.accuracy,
-                str(folder.absolute() / f"{point}-{member}.nc"),
-            )
-            for member in range(1, self.members + 1)
-            for point in range(1, self.points + 1)
-        ]
+        scene = self.scene if self.scene in scenarios.names() else os.path.abspath(self.scene)
+        made = []
+        for member, point in itertools.product(range(1, self.members + 1), range(1, len(self.prepared) + 1)):
+            settings = {**self.settings, **self.values(point), "seed": member_seed(self.seed, point, member)}
+            asked = {"scene": scene, "settings": settings, "engine": self.engine, "accuracy": self.accuracy}
+            made.append(Task(point, member, str(folder.absolute() / f"{point}-{member}.nc"), asked))
+        return made
 
     def request(self) -> dict[str, Any]:
         """Return all that determines the runs, by names for messages, in types that JSON can hold."""
-        types = {p.name: p for p in scenarios.load(self.scene).Settings.describe()}
-        words = described(self.prepared[0])
-        del words["settings"]
-        words |= {"scene": self.scene, "engine": self.engines, "accuracy": self.accuracy, "seed": self.seed}
-        words |= {f"setting {name}": types[name].typed(value) for name, value in self.settings.items()}
-        words["vary"] = [f"{axis.name}={','.join(map(axis.parameter.typed, axis.values))}" for axis in self.axes]
-        values = [*self.settings.values(), *(value for axis in self.axes for value in axis.values)]
+        made = described(self.prepared[0])
+        made |= {"scene": self.scene, "engine": [str(each.engine) for each in self.prepared], "accuracy": self.accuracy}
+        made["vary"] = {name: list(values) for name, values in self.vary.items()}
+        del made["settings"]
+        made |= {f"setting {name}": value for name, value in self.defaults.items()}
+        values = itertools.chain(self.defaults.values(), *self.vary.values())
         files = sorted(value for value in values if isinstance(value, str) and os.path.isfile(value))
-        return words | {f"content of {name}": hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in files}
+        return made | {f"content of {name}": hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in files}
 
 
 def plan(
@@ -212,29 +295,28 @@ def plan(
     Traceback (most recent call last):
     atmosbox.errors.SettingError: temperature = 3.0 is varied, too: leave out temperature or vary={"temperature": ...}.
     """
-    text = os.fspath(scene)
-    text = text.replace("_", "-") if text.replace("_", "-") in scenarios.names() else text
-    declared = scenarios.load(text).Settings
+    declared = scenarios.load(scene).Settings
     types = {p.name: p for p in declared.describe()}
-    given = by_name(settings or {}, types)
-    axes = parse_vary(vary, declared)
-    if not axes:
+    varied = parse_vary(vary, declared)
+    if not varied:
         example = Option("vary", {"molecules": "100,200"})
         raise SettingError("vary", None, "is not given", Option("vary", {"name": "a:b:n"}), ", such as ", example)
-    fixed = {name: types[name].parse(value) for name, value in given.items()}
+    fixed = {name: types[name].parse(value) for name, value in by_name(settings or {}, types).items()}
+    for name in fixed.keys() & varied.keys():
+        fix = ("leave out ", Setting(name), " or ", Option("vary", {name: None}))
+        raise SettingError(name, fixed[name], "is varied, too", *fix)
     own = fixed.pop("seed", types["seed"].default)
     chosen = int(types["seed"].parse(own if seed is None else seed))
     several = int(_MEMBERS.parse(members))
-    for name in fixed.keys() & {axis.name for axis in axes}:
-        fix = ("leave out ", Setting(name), " or ", Option("vary", {name: None}))
-        raise SettingError(name, fixed[name], "is varied, too", *fix)
-    made = Plan(text, axes, fixed, several, chosen, engine, accuracy)
-    if made.runs > MOST_RUNS:
-        raise SettingError("sweep", None, f"has {made.runs} runs, more than {MOST_RUNS}", "vary fewer values")
-    for point in range(1, made.points + 1):
+    runs = several * math.prod(map(len, varied.values()))
+    if runs > MOST_RUNS:
+        raise SettingError("sweep", None, f"has {runs} runs, more than {MOST_RUNS}", "vary fewer values")
+    prepared = []
+    for values in itertools.product(*varied.values()):
+        here = dict(zip(varied, values, strict=True))
         try:
-            made.prepared.append(prepare(text, {**fixed, **made.values(point)}, engine=engine, accuracy=accuracy))
+            prepared.append(prepare(scene, {**fixed, **here}, engine=engine, accuracy=accuracy))
         except SettingError as error:
-            error.problem += f" (at {made.named(point)})"
+            error.problem += f" (at {', '.join(f'{name}={value}' for name, value in here.items())})"
             raise
-    return made
+    return Plan(prepared[0].scene, varied, fixed, several, chosen, engine, accuracy, tuple(prepared))

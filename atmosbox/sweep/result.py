@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from atmosbox.errors import EngineError
 from atmosbox.file.declaration import Variable, derived
 from atmosbox.file.provenance import global_attributes
-from atmosbox.scene.conversion import declared_unit
-from atmosbox.sweep.axis import Axis
+from atmosbox.scene.conversion import declared_unit, to_si
+from atmosbox.scene.settings import Parameter, Value
 from atmosbox.sweep.plan import Plan, member_seed
 from atmosbox.version import __version__
 
@@ -24,14 +24,14 @@ FEWEST = 4
 """Least number of members whose scatter gives the standard error of their mean."""
 
 Floats = NDArray[np.float64]
-
 Key: TypeAlias = tuple[int, int]
 """Point and member of a run, counted from 1."""
 
 _STATES = ("complete", "failed", "missing")
 _PLACES = {"height", "altitude", "depth", "level", "time", "latitude", "longitude", "lat", "lon", "x", "y", "z"}
 """Names that mean a place or a time in any file; a setting with such a name gets the suffix ``_setting``."""
-_OWN = ("member", "member_seed", "member_status", "member_ledger", "member_reason", "engine")
+_MEASURED = ("", "_se", "_theory", "_tolerance")
+_SUFFIXES = (*_MEASURED, "_by_member", "_by_member_se")
 
 
 def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
@@ -40,12 +40,12 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
     Parameters
     ----------
     value, error
-        Values and standard errors of the members, (point, member); NaN where there is none.
+        Values and standard errors of the members, (..., member); NaN where there is none.
 
     Returns
     -------
     mean, standard_error
-        Mean and its standard error, (point,). The standard error comes from the scatter of the members or, if there are
+        Mean and its standard error, (...). The standard error comes from the scatter of the members or, if there are
         fewer than `FEWEST`, from their own standard errors, because the scatter of so few says little.
 
     Examples
@@ -58,17 +58,16 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
     ([2.0, 2.0], [0.25, 0.2])
     """
     known = np.isfinite(value)
-    count = known.sum(axis=1)
-    least = np.maximum(count, 1)
-    mean = np.where(known, value, 0.0).sum(axis=1) / least
-    square = (np.where(known, value - mean[:, None], 0.0) ** 2).sum(axis=1)
-    scatter = np.sqrt(square / np.maximum(count - 1, 1) / least)
-    own = np.sqrt((np.where(known, error, 0.0) ** 2).sum(axis=1)) / least
-    nothing = count == 0
-    return np.where(nothing, np.nan, mean), np.where(nothing, np.nan, np.where(count < FEWEST, own, scatter))
+    count = known.sum(-1)
+    with np.errstate(invalid="ignore"):  # 0 / 0 is NaN where no member has a value
+        mean = value.sum(-1, where=known) / count
+        square = ((value - mean[..., None]) ** 2).sum(-1, where=known)
+        scatter = np.sqrt(square / np.maximum(count - 1, 1) / count)
+        own = np.sqrt((error**2).sum(-1, where=known)) / count
+    return mean, np.where(count < FEWEST, own, scatter)
 
 
-def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], history: str = "") -> xr.Dataset:
+def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], command: str = "") -> xr.Dataset:
     """Return the runs of a sweep as one dataset.
 
     Parameters
@@ -79,8 +78,8 @@ def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], 
         The results of its runs by point and member, from `row`; others are missing.
     failed
         The reason of each run that failed, by point and member.
-    history
-        The line that this command adds to the history of the file.
+    command
+        The command that the user typed, for the history in the file.
 
     Returns
     -------
@@ -89,11 +88,6 @@ def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], 
         ``NAME_se``, its standard error; ``NAME_theory`` and ``NAME_tolerance`` if the scene gives them; and
         ``NAME_by_member`` with ``NAME_by_member_se``, the values of each run. Also seed, status and residual of the
         energy budget of every run, and the reason if a run failed.
-
-    Raises
-    ------
-    EngineError
-        If a headline has different units at different points.
 
     Examples
     --------
@@ -105,142 +99,101 @@ def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], 
     # The order of the headlines is that of a run that has measured as many as any
     longest = sorted(rows.values(), key=lambda each: -len(each.attrs["names"]))
     names = list(dict.fromkeys(name for each in longest for name in each.attrs["names"]))
-    taken = {name + suffix for name in names for suffix in ("", *_SUFFIXES)} | set(_OWN)
-    called = [f"{axis.name}_setting" if axis.name in taken | _PLACES else axis.name for axis in plan.axes]
-    coords = {}
-    dims: tuple[str, ...] = ()
-    for axis, own in zip(plan.axes, called, strict=True):
-        # CF takes a coordinate in pascal for a vertical axis; so a pressure is a label, not a dimension, of the grid
-        dims += (f"{axis.name}_setting" if _is_pressure(axis) else own,)
-        coords[own] = _coordinate(axis, own, dims[-1])
+    taken = {name + suffix for name in names for suffix in _SUFFIXES} | _PLACES
+    coords = dict(_coordinate(plan.parameters[name], plan.vary[name], name in taken) for name in plan.vary)
+    dims = tuple(str(coordinate.dims[0]) for coordinate in coords.values())
+    dimensions = dict(zip(dims, coords, strict=True))
     member = Variable("member", ("member",), "1", "number of the member", "realization", dtype="i8", ledger=True)
     coords["member"] = member.holding(np.arange(1, plan.members + 1))
-    data = _about_members(plan, rows, failed, dims)
+    both = (*dims, "member")
+    keys = list(itertools.product(range(1, len(plan.prepared) + 1), range(1, plan.members + 1)))
+
+    def grid(values: Iterable[Any]) -> NDArray[Any]:
+        """Return a value of each run, in the order of `keys`, as an array of the dimensions `both`."""
+        return np.array(list(values)).reshape(*map(len, plan.vary.values()), plan.members)
+
+    def measured(name: str) -> Floats:
+        """Return what each run has measured; NaN where there is none."""
+        return grid(float(rows[key][name]) if name in rows.get(key, ()) else np.nan for key in keys)
+
+    seed = grid(member_seed(plan.seed, *key) for key in keys)
+    status = grid(1 if key in failed else 0 if key in rows else 2 for key in keys)
+    data: list[tuple[Variable, NDArray[Any]]] = [
+        (Variable("member_seed", both, "1", "seed of the run", dtype="i8", ledger=True), seed),
+        (Variable("member_status", both, "", "status of the run", dtype="i1", ledger=True, flags=_STATES), status),
+        (Variable("member_ledger", both, "1", "residual of the energy budget of the run"), measured("ledger")),
+    ]
+    if failed:
+        why = Variable("member_reason", both, "", "why the run failed", dtype="U")
+        data.append((why, grid(failed.get(key, "") for key in keys)))
+    made = {declared.name: declared.holding(values) for declared, values in data}
     for name in names:
-        data |= _headline(name, rows, plan, dims)
-    used = sorted(set(plan.engines))
-    parameters: dict[str, Any] = {"scene": plan.scene, "settings": dict(plan.defaults)}
-    parameters |= {"engine": used[0]} if len(used) == 1 else {}
-    parameters |= {"version": __version__, "save_molecules": False}
-    parameters["sweep"] = {
-        "vary": {axis.name: list(axis.values) for axis in plan.axes},
-        "dimensions": dict(zip(dims, called, strict=True)),
-        "members": plan.members,
-        "seed": plan.seed,
-        "accuracy": plan.accuracy,
-        "headlines": names,
-    }
-    varied = [axis.name.replace("_", " ") for axis in plan.axes]
-    varied = [", ".join(varied[:-1]), varied[-1]] if len(varied) > 1 else varied
-    attributes = global_attributes(
-        parameters,
-        title=f"{plan.title}: {' and '.join(varied)} varied",
-        command="",
-        comment=" ".join((plan.prepared[0].module.__doc__ or "").split()),
-        references=plan.prepared[0].engine.engine.reference,
-        status="complete",
-    )
-    if history:
-        attributes["history"] = history
-    return xr.Dataset(data, coords, attributes)
-
-
-_SUFFIXES = ("_se", "_theory", "_tolerance", "_by_member", "_by_member_se")
+        about = next(each[name].attrs for each in rows.values() if name in each)
+        made |= _headline(name, about, [measured(name + suffix) for suffix in _MEASURED], dims)
+    return xr.Dataset(made, coords, _attributes(plan, names, dimensions, command))
 
 
 def row(run: xr.Dataset) -> xr.Dataset:
     """Return the headlines of a run, with their names as an attribute and the residual of its energy budget."""
     names = json.loads(run.attrs.get("atmosbox_headlines", "[]"))
-    kept = [name + suffix for name in names for suffix in ("", "_se", "_theory", "_tolerance") if name + suffix in run]
+    kept = [name + suffix for name in names for suffix in _MEASURED if name + suffix in run]
     return run[kept].assign(ledger=run["ledger_residual"].max()).assign_attrs(names=names)
 
 
-def _gathered(name: str, rows: Mapping[Key, xr.Dataset], plan: Plan) -> Floats:
-    """Return the values of a variable in all runs, (point, member); NaN where there is none."""
-    made = np.full((plan.points, plan.members), np.nan)
-    for (point, member), found in rows.items():
-        if name in found:
-            made[point - 1, member - 1] = float(found[name])
-    return made
-
-
-def _is_pressure(axis: Axis) -> bool:
-    return axis.numeric and declared_unit(axis.parameter.unit).si == "Pa"
-
-
-def _coordinate(axis: Axis, name: str, dim: str) -> xr.Variable:
-    """Return the values of a setting as a coordinate."""
-    p = axis.parameter
-    if not axis.numeric:
-        words = ["on" if value is True else "off" if value is False else str(value) for value in axis.values]
-        declared = Variable(name, (dim,), "", p.help, dtype="U")
-        return declared.holding(np.array(words, dtype=str))
+def _coordinate(p: Parameter, given: Sequence[Value], taken: bool) -> tuple[str, xr.Variable]:
+    """Return the name of a setting in the file, and its values; a name that is taken gets a suffix."""
+    name = f"{p.name}_setting" if taken else p.name
+    if p.kind not in ("int", "float"):
+        words = Variable(name, (name,), "", p.help, dtype="U")
+        return name, words.holding([p.typed(value) for value in given])
     unit = declared_unit(p.unit).si
     known = "[" not in unit  # values in an unusual unit stay in their documented unit
-    values = np.array(axis.si if known else [float(value) for value in axis.values])
-    standard = "air_pressure" if _is_pressure(axis) else None
-    made = Variable(name, (dim,), unit if known else p.unit, p.help, standard, ledger=True).holding(values)
-    made.attrs["display_units"] = p.unit
-    return made
+    # CF takes a coordinate in pascal for a vertical axis; so a pressure is a label, not a dimension, of the grid
+    dim, standard = (f"{p.name}_setting", "air_pressure") if unit == "Pa" else (name, None)
+    made = Variable(name, (dim,), unit if known else p.unit, p.help, standard, ledger=True)
+    values = made.holding([to_si(float(value), p.unit) for value in given] if known else given)
+    values.attrs["display_units"] = p.unit
+    return name, values
 
 
-def _about_members(
-    plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], dims: tuple[str, ...]
-) -> dict[str, xr.Variable]:
-    """Return seed, status and residual of the energy budget of every run, and the reason if a run failed."""
-    shape = (plan.points, plan.members)
-    seed = np.array([[member_seed(plan.seed, j + 1, k + 1) for k in range(shape[1])] for j in range(shape[0])])
-    status = np.full(shape, _STATES.index("missing"), dtype=np.int8)
-    reason = np.full(shape, "", dtype=object)
-    for point, member in rows:
-        status[point - 1, member - 1] = _STATES.index("complete")
-    for (point, member), why in failed.items():
-        status[point - 1, member - 1], reason[point - 1, member - 1] = _STATES.index("failed"), why
-    both = (*dims, "member")
-    declared = {
-        Variable("member_seed", both, "1", "seed of the run", dtype="i8", ledger=True): seed,
-        Variable("member_status", both, "", "status of the run", dtype="i1", ledger=True, flags=_STATES): status,
-        Variable("member_ledger", both, "1", "residual of the energy budget of the run"): _gathered(
-            "ledger", rows, plan
-        ),
-    }
-    if failed:
-        declared[Variable("member_reason", both, "", "why the run failed", dtype="U")] = reason.astype(str)
-    made = {each.name: each.holding(values.reshape(*plan.shape, plan.members)) for each, values in declared.items()}
-    if len(set(plan.engines)) > 1:
-        engine = Variable("engine", dims, "", "engine and its options", dtype="U")
-        made["engine"] = engine.holding(np.array(plan.engines, dtype=str).reshape(plan.shape))
-    return made
-
-
-def _headline(name: str, rows: Mapping[Key, xr.Dataset], plan: Plan, dims: tuple[str, ...]) -> dict[str, xr.Variable]:
-    """Return the variables of one headline."""
-    about = [each[name].attrs for each in rows.values() if name in each]
-    units = sorted({each["units"] for each in about})
-    if len(units) > 1:
-        raise EngineError(f"The headline {name} is in {' and '.join(units)} at different points: give it one unit.")
-    value, error, theory, known = (
-        _gathered(name + suffix, rows, plan) for suffix in ("", "_se", "_theory", "_tolerance")
-    )
+def _headline(name: str, about: dict[str, Any], found: list[Floats], dims: tuple[str, ...]) -> dict[str, xr.Variable]:
+    """Return the variables of one headline, from its attributes and its numbers in each run."""
+    value, error, theory, tolerance = found
     mean, scatter = mean_and_error(value, error)
-    both, label = (*dims, "member"), str(about[0]["long_name"])
-    average = Variable(name, dims, units[0], label, comment="mean over the members")
-    own = Variable(f"{name}_by_member", both, units[0], f"{label} in each run")
-    made = {
-        name: average.holding(mean.reshape(plan.shape)),
-        f"{name}_se": derived(average, "_se").holding(scatter.reshape(plan.shape)),
-        own.name: own.holding(value.reshape(*plan.shape, plan.members)),
-        f"{own.name}_se": derived(own, "_se").holding(error.reshape(*plan.shape, plan.members)),
-    }
+    unit, label = about["units"], about["long_name"]
+    average = Variable(name, dims, unit, label, comment="mean over the members")
+    own = Variable(f"{name}_by_member", (*dims, "member"), unit, f"{label} in each run")
+    data = [(average, mean), (derived(average, "_se"), scatter), (own, value), (derived(own, "_se"), error)]
     if np.isfinite(theory).any():
-        answer, _ = mean_and_error(theory, theory)
-        made[f"{name}_theory"] = derived(average, "_theory").holding(answer.reshape(plan.shape))
-    there = np.isfinite(known)
-    tolerance = np.where(there.any(axis=1), np.max(known, axis=1, where=there, initial=0.0), np.nan)
-    made[f"{name}_tolerance"] = derived(average, "_tolerance").holding(tolerance.reshape(plan.shape))
-    if reason := about[0].get("comment"):
+        data.append((derived(average, "_theory"), mean_and_error(theory, theory)[0]))
+    data.append((derived(average, "_tolerance"), np.fmax.reduce(tolerance, axis=-1)))
+    made = {declared.name: declared.holding(values) for declared, values in data}
+    if reason := about.get("comment"):
         made[f"{name}_tolerance"].attrs["comment"] = reason
-    made[name].attrs["display_units"] = about[0].get("display_units", units[0])
-    made[name].attrs["ancillary_variables"] = " ".join(each for each in made if each.startswith(f"{name}_"))
+    made[name].attrs["display_units"] = about.get("display_units", unit)
+    made[name].attrs["ancillary_variables"] = " ".join(each for each in made if each != name)
     made[own.name].attrs["ancillary_variables"] = f"{own.name}_se"
     return made
+
+
+def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], command: str) -> dict[str, Any]:
+    """Return the global attributes of the file of a sweep."""
+    engines = " and ".join(sorted({str(each.engine) for each in plan.prepared}))
+    parameters: dict[str, Any] = {
+        "scene": plan.scene,
+        "settings": plan.defaults,
+        "engine": engines,
+        "version": __version__,
+    }
+    vary = {name: list(values) for name, values in plan.vary.items()}
+    grid = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
+    parameters |= {"save_molecules": False, "sweep": grid | {"accuracy": plan.accuracy, "headlines": names}}
+    *others, last = [name.replace("_", " ") for name in plan.vary]
+    return global_attributes(
+        parameters,
+        title=f"{plan.title}: {', '.join(others)}{' and ' * bool(others)}{last} varied",
+        command=command,
+        comment=" ".join((plan.prepared[0].module.__doc__ or "").split()),
+        references=plan.prepared[0].engine.engine.reference,
+        status="complete",
+    )

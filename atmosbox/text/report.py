@@ -68,6 +68,8 @@ def headline_json(headline: Headline) -> dict[str, Any]:
 def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
     r"""Return the table of measured values and theory, and in words how far they are expected to be apart.
 
+    A column in which no row has an entry is left out; below stand the numbers of two programs, if there are any.
+
     Examples
     --------
     >>> from atmosbox.scene.headline import Headline
@@ -77,37 +79,20 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
     temperature [degC]  17.9 ± 2.0  14.9    +3.0 K      ±8.5 K           yes
     expected within: 4 standard errors (chance) plus 0.5 K, because the box is small.
     """
-    lines: list[str] = []
-    for header, rows, notes in headline_tables(headlines):
-        lines += [""] * bool(lines) + (table(header, rows, width, narrowest=12) if rows else [])
-        lines += [line for note in notes for line in wrapped(note, width)]
-    return lines
-
-
-def headline_tables(headlines: Sequence[Headline]) -> list[tuple[list[str], list[list[str]], list[str]]]:
-    """Return the results as tables: names of the columns, a row for each number, and the sentences below.
-
-    The first is of what was measured, the second, if there is one, of numbers of two programs. A column in which no
-    row has an entry is left out.
-
-    Examples
-    --------
-    >>> headline_tables([])[0][2]
-    ['No mean of this run is compared with theory: it is too short, or a knob was turned.']
-    """
     if not headlines:
-        return [([], [], ["No mean of this run is compared with theory: it is too short, or a knob was turned."])]
+        return wrapped("No mean of this run is compared with theory: it is too short, or a knob was turned.", width)
     rows = [_row(each) for each in headlines if each.resolved and not each.program]
     header = ["quantity", "measured", "theory", "difference", "expected within", "agrees?"]
     filled = [k for k in range(len(header)) if k < 2 or any(row[k] for row in rows)]
-    notes = [*_expected(headlines), *(_too_small(each) for each in headlines if not each.resolved)]
-    made = [([header[k] for k in filled], [[row[k] for k in filled] for row in rows], notes)]
-    compared = [each for each in headlines if each.program]
-    if compared:
-        lines = [[_named(each), *(_rounded(_shown(each)[part]) for part in ("value", "theory"))] for each in compared]
-        reasons = dict.fromkeys(f"{each.reason[:1].upper()}{each.reason[1:]}." for each in compared if each.reason)
-        made.append((["two programs compared", compared[0].program, "atmosbox"], lines, list(reasons)))
-    return made
+    lines = table([header[k] for k in filled], [[row[k] for k in filled] for row in rows], width, 12) if rows else []
+    for note in [*_expected(headlines), *(_too_small(each) for each in headlines if not each.resolved)]:
+        lines += wrapped(note, width)
+    if compared := [each for each in headlines if each.program]:
+        rows = [[_named(each), *(_rounded(_shown(each)[part]) for part in ("value", "theory"))] for each in compared]
+        lines += ["", *table(["two programs compared", compared[0].program, "atmosbox"], rows, width, 12)]
+        for reason in dict.fromkeys(each.reason for each in compared if each.reason):
+            lines += wrapped(f"{reason[:1].upper()}{reason[1:]}.", width)
+    return lines
 
 
 def _named(headline: Headline) -> str:

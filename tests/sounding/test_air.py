@@ -68,17 +68,6 @@ def test_dry_isothermal_air_has_the_height_of_the_barometric_law():
     np.testing.assert_allclose(hydrostatic_height(dry), expected, rtol=1e-6)
 
 
-def test_it_is_the_thickness_of_metpy():
-    air = weisman_klemp()
-    vapor = mpcalc.mixing_ratio_from_relative_humidity(
-        air.pressure * units.Pa,
-        air.temperature * units.K,
-        mpcalc.relative_humidity_from_dewpoint(air.temperature * units.K, air.dewpoint * units.K),
-    )
-    thickness = mpcalc.thickness_hydrostatic(air.pressure * units.Pa, air.temperature * units.K, vapor)
-    assert hydrostatic_height(air)[-1] == pytest.approx(thickness.to("m").magnitude, rel=1e-4)
-
-
 PRESSURE = np.array([1000e2, 950e2, 900e2, 850e2, 700e2, 600e2, 500e2, 400e2, 300e2, 200e2])
 STABLE = Sounding(PRESSURE, 288.0 - np.linspace(0, 30, 10), 270.0 - np.linspace(0, 60, 10), name="calm")
 

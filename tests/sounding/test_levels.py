@@ -8,8 +8,8 @@ from atmosbox.cli import app
 from atmosbox.errors import SoundingError
 from atmosbox.file import netcdf
 from atmosbox.scene.sounding import Sounding, read
-from atmosbox.scene.sounding.column import QUANTITIES, stated_columns
-from atmosbox.scene.sounding.plausibility import LARGEST_GAP, ROUNDING, check_levels, check_plausible
+from atmosbox.scene.sounding.column import QUANTITIES, check_plausible, stated_columns
+from atmosbox.scene.sounding.profile import LARGEST_GAP, ROUNDING, check_levels
 
 PRESSURE = np.array([1000e2, 900e2, 800e2, 650e2, 500e2, 300e2, 100e2])
 TEMPERATURE = np.array([298.0, 292.0, 286.0, 275.0, 262.0, 233.0, 210.0])
@@ -93,17 +93,18 @@ def cell(lines, line, column, value):
 P, Z, T, TD = range(4)
 
 
-@pytest.mark.parametrize("column", [P, T])
-def test_a_level_without_pressure_or_temperature_is_left_out(written, csv_lines, column):
+@pytest.mark.parametrize(
+    ("column", "remark"),
+    [
+        (P, "without pressure or temperature"),
+        (T, "without pressure or temperature"),
+        (TD, "without dewpoint below one"),
+    ],
+)
+def test_a_level_without_a_value_is_left_out(written, csv_lines, column, remark):
     sounding = read(written(cell(csv_lines, 6, column, -9999)))
     assert len(sounding) == 11
-    assert sounding.remarks[0] == "1 level without pressure or temperature left out."
-
-
-def test_a_level_without_dewpoint_below_one_that_has_it_is_left_out(written, csv_lines):
-    sounding = read(written(cell(csv_lines, 6, TD, -9999)))
-    assert len(sounding) == 11
-    assert "1 level without dewpoint below one that has it left out." in sounding.remarks
+    assert sounding.remarks[0].startswith(f"1 level {remark}")
 
 
 def test_levels_above_the_highest_dewpoint_are_kept_dry(written, csv_lines):
@@ -114,18 +115,10 @@ def test_levels_above_the_highest_dewpoint_are_kept_dry(written, csv_lines):
     assert "Above 300 hPa no dewpoint: taken 30 K below the temperature." in sounding.remarks
 
 
-def test_two_levels_of_the_same_pressure_that_differ_are_refused(written, csv_lines):
+def test_lines_and_not_levels_are_named(written, csv_lines):
     twice = cell([*csv_lines[:6], csv_lines[5], *csv_lines[6:]], 7, T, 3.3)
     with pytest.raises(SoundingError, match="line 7: the pressure of 800 hPa is that of the level before it"):
         read(written(twice))
-
-
-def test_a_wide_gap_is_remarked(written, csv_lines):
-    del csv_lines[7]
-    assert read(written(csv_lines)).remarks == ("The widest gap below 300 hPa, 200 hPa, is from 700 to 500 hPa.",)
-
-
-def test_lines_and_not_levels_are_named_when_levels_are_left_out(written, csv_lines):
     lines = cell(cell(csv_lines, 4, T, ""), 9, TD, 30)
     with pytest.raises(SoundingError, match=r"ascent\.txt, line 9: the dewpoint of 30 degC is above the temperature"):
         read(written(lines))
@@ -186,16 +179,13 @@ def run(folder, doubtful, *words):
     return CliRunner().invoke(app, [*words, "--set", "ascent=20", "--out", str(folder / "x.nc")])
 
 
-def test_a_file_cut_to_a_part_is_warned_of_on_stderr_and_in_the_file(tmp_path, doubtful):
+def test_a_doubtful_file_is_warned_of_in_the_file_too_and_strict_refuses_it(tmp_path, doubtful):
     assert read(doubtful).doubts
-    with pytest.warns(UserWarning, match="ends at 500 hPa"):
-        assert run(tmp_path, doubtful).exit_code == 0
-    assert "Doubtful: The sounding ends at 500 hPa" in netcdf.read(tmp_path / "x.nc").attrs["comment"]
-
-
-def test_strict_refuses_it(tmp_path, doubtful):
     done = run(tmp_path, doubtful, "--strict")
     assert done.exit_code == 2
     assert "ends at 500 hPa" in done.stderr
     assert "leave --strict out" in done.stderr
     assert not (tmp_path / "x.nc").exists()
+    with pytest.warns(UserWarning, match="ends at 500 hPa"):
+        assert run(tmp_path, doubtful).exit_code == 0
+    assert "Doubtful: The sounding ends at 500 hPa" in netcdf.read(tmp_path / "x.nc").attrs["comment"]

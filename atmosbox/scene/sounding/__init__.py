@@ -3,13 +3,11 @@
 ============== =========================================================================
 file           what is in it
 ============== =========================================================================
-profile        the sounding itself: pressure, temperature, dewpoint from the ground up
-column         the names and units of its columns
-plausibility   what no sounding can be, and what is doubtful in one
-table          from the columns of a file to a sounding: units, missing values, order
+column         names, units and plausible values of the columns of a sounding
+profile        the sounding itself, what no ascent can be, and what is doubtful in one
 formats        the text formats: Wyoming, IGRA, BUFKIT, SHARPpy, and CSV and the like
 netcdf         profiles as xarray and MetPy write them
-reading        opens a file and recognises its format
+reading        from a file to a sounding: recognises the format; units, missing values, order
 analytic       Weisman and Klemp's formula for the environment of a thunderstorm
 lifted_parcel  LCL, LFC, EL, CAPE and CIN, by MetPy, and the heights of levels
 ============== =========================================================================

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import SIGNS, Unit, known_unit
 
-__all__ = ["QUANTITIES", "Measure", "in_si", "number", "stated_columns", "unit_of"]
+__all__ = ["QUANTITIES", "Measure", "Place", "Table", "check_plausible", "in_si", "number", "stated_columns", "unit_of"]
+
+_HIGHEST_GROUND = 450e2  # Pa; the highest stations, in Tibet, report some 550 hPa
 
 Floats = NDArray[np.float64]
+Place = Callable[[int], str]
+"""Returns the place of a level in a file, for messages."""
 
 
 class Measure(NamedTuple):
@@ -25,6 +29,39 @@ class Measure(NamedTuple):
     units: tuple[str, ...]
     low: float
     high: float
+
+
+class Table(NamedTuple):
+    """The columns of a file as they are written in it.
+
+    Parameters
+    ----------
+    file
+        The name of the file in messages.
+    kind
+        The format.
+    name
+        The name of the ascent.
+    values
+        For each quantity its column (level,) in the file's unit, NaN where a value is missing.
+    units
+        For each quantity its unit as written, None if there is none.
+    places
+        The place of each level in the file.
+    head
+        The place where the columns are named.
+    remarks
+        Remarks on what reading has left out so far, one sentence each.
+    """
+
+    file: str
+    kind: str
+    name: str
+    values: Mapping[str, Floats]
+    units: Mapping[str, str | None]
+    places: tuple[str, ...]
+    head: str
+    remarks: tuple[str, ...] = ()
 
 
 QUANTITIES: dict[str, Measure] = {
@@ -48,7 +85,6 @@ _BRACKETS = re.compile(r"(.+?)\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]")
 _SUFFIX = re.compile(r"(.+?)(?:\s*[/_,:]\s*|\s+)([^\s_/,:]+)")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MISSING = re.compile(r"(?i)|nan|na|n/a|none|null|missing|m|-+|/+|\*+|\.|#n/a")
-_INFINITE = re.compile(r"(?i)[+-]?inf(?:inity)?")
 
 
 def _plain(name: str) -> str:
@@ -182,13 +218,62 @@ def number(token: str, quantity: str, where: str) -> float:
     text = token.strip().strip("\"'").strip().translate(SIGNS)
     if _MISSING.fullmatch(text):
         return float("nan")
+    if _NUMBER.fullmatch(text[:60]) and len(text) <= 60 and abs(value := float(text)) < 1e30:
+        return value
     problem = "is not a number: correct it, or write NaN"
-    if _INFINITE.fullmatch(text):
-        problem = "is not finite: correct it, or write NaN"
-    elif re.fullmatch(r"[+-]?[0-9]+,[0-9]+", text):
+    if re.fullmatch(r"[+-]?[0-9]+,[0-9]+", text):
         problem = "is written with a comma: write a decimal point"
-    elif _NUMBER.fullmatch(text[:60]):
-        if len(text) <= 60 and abs(value := float(text)) < 1e30:
-            return value
-        problem = "is too large: correct it, or write NaN"
     raise SoundingError(f"{where}: the {quantity} {shown(text)} {problem}.")
+
+
+def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
+    """Return the first level whose value is outside the limits if its unit is this one; None if there is none."""
+    measure, si = QUANTITIES[quantity], in_si(values, unit)
+    wrong = np.flatnonzero((si < measure.low) | (si > measure.high))
+    if not wrong.size and quantity == "pressure" and not np.nanmax(si) >= _HIGHEST_GROUND:
+        return int(np.nanargmax(si))
+    return int(wrong[0]) if wrong.size else None
+
+
+def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> None:
+    """Refuse values that do not occur in the atmosphere, and name the unit that they look like.
+
+    Parameters
+    ----------
+    quantity
+        One of :data:`~atmosbox.scene.sounding.column.QUANTITIES`.
+    values : (level,)
+        The values in `unit`, NaN where they are missing; at least one is a number.
+    unit
+        The unit in which they are read.
+    place
+        Function that returns the place of a level in the file.
+
+    Raises
+    ------
+    SoundingError
+        If a value is outside the limits of the quantity, or the largest pressure cannot be that of a ground.
+
+    Examples
+    --------
+    >>> check_plausible("temperature", np.array([298.0, 290.0]), "degC", lambda level: f"a.csv, line {level + 2}")
+    Traceback (most recent call last):
+    atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC does not occur in the atmosphere and looks
+    like K: name its unit, as in "temperature [K]".
+    """
+    measure = QUANTITIES[quantity]
+    known = known_unit(unit) or Unit(measure.si)
+    wrong = _first_implausible(quantity, values, known)
+    if wrong is None:
+        return
+    high_up = quantity == "pressure" and measure.low <= in_si(values, known)[wrong] < _HIGHEST_GROUND
+    low, ground = (_HIGHEST_GROUND, " at the ground") if high_up else (measure.low, "")
+    what = (
+        f"{place(wrong)}: a {quantity} of {values[wrong]:.10g} {shown(unit)}{ground} does not occur in the atmosphere"
+    )
+    for other in measure.units:
+        candidate = known_unit(other)
+        if candidate and candidate != known and _first_implausible(quantity, values, candidate) is None:
+            raise SoundingError(f'{what} and looks like {other}: name its unit, as in "{quantity} [{other}]".')
+    ends = " to ".join(f"{(limit - known.offset) * known.down / known.up:.6g}" for limit in (low, measure.high))
+    raise SoundingError(f"{what} ({ends} {shown(unit)}): correct it, or write -9999 where it is missing.")

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +17,7 @@ from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 __all__ = ["Indices", "Level", "hydrostatic_height", "indices"]
 
 
-@dataclass(frozen=True)
-class Level:
+class Level(NamedTuple):
     """A level that a lifted parcel meets.
 
     Parameters
@@ -34,8 +32,7 @@ class Level:
     temperature: float
 
 
-@dataclass(frozen=True)
-class Indices:
+class Indices(NamedTuple):
     """Levels and energies of a parcel that is lifted from the lowest level of a sounding.
 
     Parameters

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox.errors import SoundingError, shown
-from atmosbox.scene.sounding.column import QUANTITIES, stated_columns
-from atmosbox.scene.sounding.table import Table
+from atmosbox.scene.sounding.column import QUANTITIES, Table, stated_columns
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,9 +84,6 @@ def _table(dataset: xr.Dataset, file: str, name: str) -> Table:
             values[quantity] = np.asarray(variable.values, dtype=np.float64).ravel()
         except (TypeError, ValueError):
             raise SoundingError(f"{what} holds no numbers: give another file.") from None
-        if (odd := np.flatnonzero(np.isinf(values[quantity]))).size:
-            where = f"{file}, level {odd[0] + 1}"
-            raise SoundingError(f"{where}: the {quantity} is not finite: correct it, or write NaN.")
         units[quantity] = str(variable.attrs["units"]) if "units" in variable.attrs else None
     title = str(dataset.attrs.get("title", "")).strip()[:150] or name
     places = tuple(f"level {i + 1}" for i in range(values["pressure"].size))

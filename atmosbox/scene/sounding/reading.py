@@ -1,18 +1,22 @@
-"""Reading a file of any format: open it, recognise the format by the content, read, check."""
+"""From a file of any format to a sounding: recognise the format by the content; units, missing values, order."""
 
 from __future__ import annotations
 
 import os
 import re
+from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from atmosbox.errors import FileError, SoundingError, shown
+from atmosbox.scene.sounding.column import QUANTITIES, Table, check_plausible, in_si, unit_of
 from atmosbox.scene.sounding.formats import FORMATS, Text
 from atmosbox.scene.sounding.netcdf import SIGNATURES, profile
 from atmosbox.scene.sounding.profile import Sounding
-from atmosbox.scene.sounding.table import Table, sounding_of
 
-__all__ = ["LARGEST_FILE", "MOST_LINES", "read"]
+__all__ = ["DRY_DEPRESSION", "LARGEST_FILE", "MOST_LINES", "read", "sounding_of"]
 
 LARGEST_FILE = 16 * 2**20
 """Largest size of a file that is opened; a sounding has some kilobytes [byte]."""
@@ -20,13 +24,18 @@ LARGEST_FILE = 16 * 2**20
 MOST_LINES = 100_000
 """Largest number of lines of a text that is read; a report every second makes some 6000."""
 
+LONGEST_LINE = 10_000
+"""Largest length of a line that is read."""
+
+DRY_DEPRESSION = 30.0
+"""Dewpoint depression of air above the highest level with a dewpoint, as weather services coded dry air [K]."""
+_LOW_MARK = -999.0  # at or below it a number marks a missing value
+_HIGH_MARKS = (999.0, 999.9, 999.99, 9999.0, 9999.9, 99999.0, 99999.9)  # of temperature and dewpoint
 _FIX = "give a sounding as Wyoming, IGRA, BUFKIT or SHARPpy text, CSV or netCDF"
 _BINARY = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
-_MARKS = {
-    b"PK\x03\x04": "is a zip file or a workbook: save it as CSV",
-    b"%PDF": "is a PDF: save the numbers as CSV",
-    b"\x1f\x8b": "is packed: type gunzip first",
-}
+
+
+Floats = NDArray[np.float64]
 
 
 def read(path: str | os.PathLike[str]) -> Sounding:
@@ -44,15 +53,15 @@ def read(path: str | os.PathLike[str]) -> Sounding:
     Returns
     -------
     Sounding
-        The ascent. See :func:`atmosbox.scene.sounding.table.sounding_of` for the treatment of missing values.
+        The ascent. See :func:`sounding_of` for the treatment of missing values.
 
     Raises
     ------
     FileError
         If the file is missing, unreadable, a folder, or larger than 16 MiB.
     SoundingError
-        If it is empty or has more than 100 000 lines, is in no known format, lacks a column or a unit, or if its
-        levels do not make an ascent.
+        If it has more than 100 000 lines or one of more than 10 000 characters, is in no known format, lacks a column
+        or a unit, or if its levels do not make an ascent.
 
     Examples
     --------
@@ -75,43 +84,31 @@ def read(path: str | os.PathLike[str]) -> Sounding:
 
 def _content(source: Path, file: str) -> bytes:
     """Return the bytes of a file, or raise FileError."""
-    if os.path.isdir(source):
-        raise FileError(f"{file} is a folder: give a file in it.")
-    if not os.path.exists(source):
-        raise FileError(f"{file} does not exist: check the name and the folder.")
-    if not os.path.isfile(source):
-        raise FileError(f"{file} may not be read: give an ordinary file.")
+    if not source.is_file():
+        raise FileError(f"{file} is no file that can be read: check the name and the folder.")
     if (size := os.path.getsize(source)) > LARGEST_FILE:
         raise FileError(f"{file} has {size / 1e6:.0f} MB, far more than a sounding: {_FIX}.")
     try:
-        content = source.read_bytes()
+        return source.read_bytes()
     except OSError as error:
         raise FileError(f"{file} may not be read ({error.strerror or error}): check what ls -l says of it.") from error
-    if not content.strip():
-        raise SoundingError(f"{file} is empty: {_FIX}.")
-    return content
 
 
 def _decoded(content: bytes, file: str) -> str:
     """Return the text of a file, in UTF-8 or else latin-1, or in UTF-16 if it begins with its mark."""
-    for mark, problem in _MARKS.items():
-        if content.startswith(mark):
-            raise SoundingError(f"{file} {problem}.")
     wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
-    if not wide and _BINARY.search(content):
+    with suppress(UnicodeDecodeError):
+        if wide or not _BINARY.search(content):
+            return content.decode("utf-16" if wide else "utf-8-sig")
+    if wide or _BINARY.search(content):
         raise SoundingError(f"{file} is not a text: {_FIX}.")
-    try:
-        return content.decode("utf-16" if wide else "utf-8-sig")
-    except UnicodeDecodeError:
-        if wide:
-            raise SoundingError(f"{file} is not a text: {_FIX}.") from None
-        return content.decode("latin-1")
+    return content.decode("latin-1")
 
 
 def _parsed(text: Text) -> Table:
     """Return the columns of a text in any of the formats."""
-    if len(text.lines) > MOST_LINES:
-        raise SoundingError(f"{text.file} has {len(text.lines)} lines, far more than a sounding: {_FIX}.")
+    if len(text.lines) > MOST_LINES or max(map(len, text.lines)) > LONGEST_LINE:
+        raise SoundingError(f"{text.file} has far more lines, or longer ones, than a sounding: {_FIX}.")
     for parse in FORMATS:
         if (table := parse(text)) is not None:
             return table
@@ -120,3 +117,82 @@ def _parsed(text: Text) -> Table:
         f"{text.place(first)}: {shown(line.strip())} begins no sounding that is known: name the columns, as in "
         "pressure [hPa],temperature [degC],dewpoint [degC]."
     )
+
+
+def sounding_of(table: Table) -> Sounding:
+    """Return the sounding in the columns of a file, after every check.
+
+    A level without pressure or temperature is left out, and so is a level without dewpoint below another that has one,
+    as in MetPy. Above the highest dewpoint, where radiosondes cease to report it, the dewpoint is set 30 K below the
+    temperature. Of a level that is given twice, one is left out. The remarks list all this.
+
+    Raises
+    ------
+    SoundingError
+        If a column or its unit is missing, or if the levels do not make an ascent.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> columns = {
+    ...     "pressure": np.array([1000.0, 850.0, 700.0, 500.0, 300.0]),
+    ...     "temperature": np.array([25.0, 15.0, 5.0, -10.0, -40.0]),
+    ...     "dewpoint": np.array([17.0, 12.0, -3.0, -25.0, -9999.0]),
+    ... }
+    >>> units = {"pressure": "hPa", "temperature": "degC", "dewpoint": "degC"}
+    >>> ascent = sounding_of(Table("a.csv", "CSV", "a", columns, units, tuple("12345"), "a.csv, line 1"))
+    >>> float(ascent.dewpoint[-1]), ascent.remarks[0]
+    (203.15, 'Above 500 hPa no dewpoint: taken 30 K below the temperature.')
+    """
+    columns = {quantity: _known(table, quantity) for quantity in QUANTITIES}
+    whole = ~np.isnan(columns["pressure"]) & ~np.isnan(columns["temperature"])
+    if not whole.any():
+        raise SoundingError(f"{table.file}: no level has both pressure and temperature: give a sounding with values.")
+    for quantity, column in columns.items():
+        used = np.where(whole, column, np.nan)
+        if not np.isnan(used).all():
+            unit = str(table.units[quantity]).strip()
+            check_plausible(quantity, used, unit, lambda level: f"{table.file}, {table.places[level]}")
+    rows = np.stack([in_si(each, unit_of(q, table.units[q], table.head)) for q, each in columns.items()])
+    places = np.array([f"{table.file}, {place}" for place in table.places])
+    remarks = [*table.remarks]
+
+    def keep(which: NDArray[np.bool_], left_out: str) -> None:
+        nonlocal rows, places
+        if count := int(np.count_nonzero(~which)):
+            remarks.append(f"{count} level{'s' if count > 1 else ''} {left_out}.")
+        rows, places = rows[:, which], places[which]
+
+    keep(whole, "without pressure or temperature left out")
+    if rows[0, 0] < rows[0, -1]:
+        rows, places = rows[:, ::-1], places[::-1]
+    moist = ~np.isnan(rows[2])
+    if not moist.any():
+        raise SoundingError(
+            f"{table.file}: no level has pressure, temperature and dewpoint: give a sounding with all three."
+        )
+    above = np.arange(moist.size) > np.flatnonzero(moist)[-1]
+    keep(moist | above, "without dewpoint below one that has it left out")
+    same = np.all((rows[:, 1:] == rows[:, :-1]) | np.isnan(rows[:, 1:] + rows[:, :-1]), axis=0)
+    keep(~np.r_[False, same], "given twice taken once")
+    pressure, temperature, dewpoint = rows
+    dry = np.isnan(dewpoint)
+    if dry.any():
+        highest = pressure[~dry][-1] / 100
+        remarks.append(f"Above {highest:.6g} hPa no dewpoint: taken {DRY_DEPRESSION:.0f} K below the temperature.")
+    name = shown(" ".join(table.name.split())) or table.file
+    dewpoint = np.where(dry, temperature - DRY_DEPRESSION, dewpoint)
+    source = f"{table.file}, {table.kind}"
+    return Sounding(pressure, temperature, dewpoint, name, source, tuple(remarks), tuple(map(str, places)))
+
+
+def _known(table: Table, quantity: str) -> Floats:
+    """Return a column with NaN in place of marks of missing values, after a check that it has a unit."""
+    if quantity not in table.values:
+        raise SoundingError(f"{table.head}: there is no {quantity}: name its column {quantity}.")
+    unit_of(quantity, table.units.get(quantity), table.head)
+    column = np.array(table.values[quantity], dtype=np.float64)
+    missing = column <= _LOW_MARK
+    if quantity != "pressure":
+        missing |= np.isin(column, _HIGH_MARKS)
+    return np.where(missing, np.nan, column)
