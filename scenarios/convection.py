@@ -383,12 +383,14 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     found = {"layer_temperature_conduction": np.interp(height, rest.height * metre, rest.temperature) * kelvin}
     if "layer_temperature" in dataset:
         density = dataset.number_density.values / box.scale.number_density
+        # the adiabat: by how much it falls from layer to layer, laid through the temperature measured half-way up
         steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * kelvin / metre
         fallen = np.concatenate([[0.0], np.cumsum(0.5 * (steps[1:] + steps[:-1]) * np.diff(height))])
         middle = 0.5 * settings.si.height
         warm = np.interp(middle, height, dataset.layer_temperature.values)
         found["layer_temperature_adiabatic"] = warm + np.interp(middle, height, fallen) - fallen
     rates, last = box.growth(kT, pull), _linear(dataset, settings)
+    # growth by linear theory, backwards and a little forwards from the last frame in which it holds
     found["roll_speed_theory"] = np.full(dataset.sizes["elapsed_time"], math.nan)
     if last is not None and np.max(rates) > 0.0:
         since = dataset.elapsed_time.values - dataset.elapsed_time.values[last]
@@ -411,6 +413,7 @@ def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
     if settings.start != "at-rest" or settings.sides == "warm-and-cold" or not reached.any():
         return None
     last = int(np.argmax(reached))
+    # rolls have grown if they are six times as strong as noise in all modes together
     least = 6.0 * math.sqrt(dataset.sizes["mode"]) * _noise(dataset, settings.molecules)
     return last if last >= 6 and np.nanmax(speed) > least else None
 
@@ -502,6 +505,7 @@ def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecu
     """Return the growth rate of the strongest roll while it is weak, beside that of linear theory."""
     strongest = int(np.argmax(np.abs(dataset.roll_amplitude.values[last])))
     step = float(dataset.elapsed_time.values[1] - dataset.elapsed_time.values[0])
+    # the rate at which viscosity alone damps the roll, per frame
     square = float(box.waves[strongest]) ** 2 + (math.pi / box.height) ** 2
     decay = float(box.gas.viscosity(box.density, 1.0)) / box.density * square / box.scale.time * step
     weak = dataset.roll_amplitude.values[: last + 1, strongest]

@@ -115,7 +115,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     warm = dataset.isel(elapsed_time=slice(SETTLE, None))
     if warm.sizes["elapsed_time"] < 41:
         return ()
-    # collisions of a molecule in a frame: each collision is one of two molecules
+    # the length of a frame [s]; collisions of a molecule per second: each collision is one of two molecules
     frame = float(warm.elapsed_time[-1] - warm.elapsed_time[0]) * 1e-9 / (warm.sizes["elapsed_time"] - 1)
     met = np.diff(warm.collision_count.values) * 2.0 / settings.molecules / frame
     measured = warm.air_temperature.values, warm.air_pressure.values, warm.mean_molecular_speed.values, met

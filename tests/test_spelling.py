@@ -107,6 +107,8 @@ WORDS = {
     r"updraughts?": "updraft",
     r"way of running": "engine and setting",
     r"next to no time": "a vanishing time",
+    r"next to none": "hardly any",
+    r"forgets? its": "no longer depends on",
     r"open air": "far from walls",
     r"figure of speech": "what happens",
     r"letting time pass": "to compute",

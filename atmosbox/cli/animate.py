@@ -27,12 +27,13 @@ def animate(
         typer.Option(help="The format, where the name of the film does not say it; mp4 needs atmosbox[movie]."),
     ] = None,
     seconds: Annotated[
-        float | None, typer.Option(metavar="S", help="How long it lasts at most.  [default: 12]", show_default=False)
+        float | None,
+        typer.Option(metavar="S", help="Greatest length of the film, in seconds.  [default: 12]", show_default=False),
     ] = None,
     fps: Annotated[
         float | None,
         typer.Option(
-            metavar="N", help="Pictures a second.  [default: 10, or 20 where motion is smooth]", show_default=False
+            metavar="N", help="Frames per second.  [default: 10, or 20 where motion is smooth]", show_default=False
         ),
     ] = None,
     graphs: Annotated[bool, typer.Option("--graphs", help="Film the graphs alone, without the molecules.")] = False,

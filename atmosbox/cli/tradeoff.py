@@ -42,11 +42,10 @@ def tradeoff(
     quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
-    """Measure speed against accuracy: a scene through engines and settings, errors beside seconds.
+    """Measure speed against accuracy: errors and seconds of a scene on several engines and settings.
 
     Each engine and setting runs many times, with other seeds, while the budget lasts; the engines are compiled before.
-    Ctrl-C ends it early and keeps what was measured. Type the same again after a kill: it goes on with the runs that
-    are there.
+    Ctrl-C ends it early and keeps what was measured. After a kill type the same command again: it goes on where it was.
     """
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
