@@ -252,6 +252,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             parts=PARTS,
             headline="mean_condensation_rate",
             theory="theory",
+            note="While vapour condenses, its heat warms the liquid, and more evaporates."
+            if settings.humidity > 100.0
+            else "",
         ),
         *((grown,) if settings.drops else ()),
     )

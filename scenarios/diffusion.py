@@ -315,7 +315,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         over_time(
             "Mixing makes entropy",
             {"mixing_entropy": "molecules"},
-            "entropy / N k ln 2",
+            "entropy / N\u00a0k\u00a0ln\u00a02",
             theory="theory",
             headline="entropy_after_one_mixing_time",
         ),

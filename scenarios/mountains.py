@@ -211,10 +211,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         more=rain if settings.rain else (),
         headline="rain" if settings.rain else "",
     )
-    way = "path of the parcel, from the plain to the plain beyond"
-    time = "time in the box; in the Alps hours"
+    way = "path of the parcel, from plain to plain"
     return (
         replace(atmosphere_panel("Over two mountains", way=way), start=(settings.temperature, settings.pressure)),
-        replace(warm, x_label=time),
-        replace(water, x_label=time),
+        replace(warm, note="The ascents take nanoseconds in the box, and hours in the Alps."),
+        water,
     )

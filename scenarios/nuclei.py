@@ -338,6 +338,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_label="relative humidity",
             x_unit="nm",
             y_unit="percent",
+            note="Below it shrinks, as pure water does here." if settings.pure else "",
             headlines=("humidity_over_drops",),
             guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),),
             x_limits=(0.5, 2.5),
