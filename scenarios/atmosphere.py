@@ -315,7 +315,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         },
         knobs=(
             wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
-            *gravity(parcel, scale, settings, low=1.0, high=30.0),
+            *gravity(parcel, scale, settings, low=1.0, high=20.0),
         )
         if settings.floor == "heat-bath"
         else (),

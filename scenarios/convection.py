@@ -164,7 +164,8 @@ class Settings(SceneSettings):
         """The gravity under which the box is `HEIGHTS` scale heights high [m s-2]."""
         si = self.si
         light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
-        return math.floor(100.0 * HEIGHTS * light) / 100.0
+        most: float = math.floor(100.0 * HEIGHTS * light) / 100.0
+        return most
 
     def check(self) -> None:
         """Refuse a weight that would leave hardly any air below the ceiling."""

@@ -11,6 +11,7 @@ from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.lab.lab_start import served_start
 from atmosbox.lab.memory_image import parts
 from atmosbox.lab.start_plan import is_drawn, start_of
+from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import build, prepare
@@ -83,6 +84,20 @@ def test_theory_that_changes_with_time_goes_on_as_theory_does():
     np.testing.assert_allclose(np.diff(np.log(decay[-20:])) / np.diff(time[-20:]), -1.0, atol=0.02)
     assert time[-1] == pytest.approx(20.0 * prepared.settings.duration)
     assert {f"left_gas_share_{name}_theory" for name in MOMENTS} <= set(rest["curves"])
+
+
+def test_theory_of_a_column_follows_the_temperature_of_its_floor_and_gravity():
+    prepared = prepare("atmosphere", {"molecules": 3000}, engine="exact")
+    begun = short_run(prepared)
+    (table,) = tables(prepared, build(prepared), begun)
+    for kelvin, gravity in ((150.0, 1.7), (105.0, 19.0)):
+        here = begun.assign(wall_temperature=begun.wall_temperature * 0.0 + kelvin)
+        here["gravity"] = "elapsed_time", np.full(here.sizes["elapsed_time"], gravity)
+        for name, expected in prepared.module.theory(here, prepared.settings).items():
+            layers = np.array(table["curves"][name]).T
+            found = [np.interp(kelvin / gravity, table["grid"], layer) for layer in layers]
+            found = np.array(found) * (gravity if name in table["times"] else 1.0)
+            np.testing.assert_allclose(found, expected, atol=5e-4 * expected.max(), err_msg=name)
 
 
 def is_done(task, found):

@@ -29,7 +29,7 @@ WHOLE = f"#atmosbox={__version__}&scene=temperature&molecules=50&seed=7&turns=3:
 TURNED = {
     "temperature": ({}, 90, {"temperature": (-200.0, 500.0)}),
     "lifting-dry": ({"molecules": 100, "ascent": 40}, 60, {"altitude": (0.0, 9.0)}),
-    "atmosphere": ({"molecules": 500}, 20, {"temperature": (100.0, 600.0), "gravity": (1.0, 30.0)}),
+    "atmosphere": ({"molecules": 500}, 20, {"temperature": (100.0, 600.0), "gravity": (1.0, 20.0)}),
     "convection": (
         {"molecules": 300},
         60,
