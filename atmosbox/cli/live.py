@@ -16,6 +16,7 @@ from atmosbox.cli import option
 from atmosbox.cli.application import command
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
+from atmosbox.errors import Option, SettingError
 
 
 @command(
@@ -33,14 +34,7 @@ def live(
     engine: option.Engine = None,
     accuracy: option.Accuracy = None,
     port: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=1,
-            max=65535,
-            help="Port of the page.  [default: the first free one from 8642 on]",
-            show_default=False,
-        ),
+        int | None, typer.Option(metavar="N", help="Port of the page.  [default: the first free one from 8642 on]")
     ] = None,
     no_token: Annotated[
         bool,
@@ -56,6 +50,8 @@ def live(
     It is the page that lab writes, with all settings of the scene: for a changed setting, the page asks atmosbox for a
     new start. Only this computer reaches it, and the address has a token that is new each time.
     """
+    if port is not None and not 1 <= port <= 65_535:
+        raise SettingError("port", port, "is no port from 1 to 65535", Option("port", 8642))
     asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
     prepared = checked(asked)
 
