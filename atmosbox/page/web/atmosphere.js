@@ -13,14 +13,21 @@ const COLOURS = {
 // There is no hygrometer where this many molecules, or fewer, would saturate the air: their number scatters too much.
 const FEW = 50;
 
-// The path of the parcel as a curve of its graph: heights [km] over time, and the variables measured along the path.
-export function wayOf(panel, numbers) {
-  const time = numbers.get("elapsed_time"), height = numbers.get("parcel_height");
-  if (!time?.length || !height?.length) return [];
-  const [temperature, pressure, liquid, haze, rain, humid, base, vapour] = panel.along.map((name) => numbers.get(name) ?? []);
+// The path of the parcel as a curve of its graph: heights [km] over time, and the variables measured along the path. It
+// begins on the ground if the graph says so, and a planned path is known before the parcel moves.
+export function wayOf({ lines: [line], start, along }, numbers) {
+  const time = numbers.get("elapsed_time") ?? [], height = numbers.get("parcel_height") ?? [];
+  if (!height.length && !line.planned) return [];
+  const [temperature, pressure, liquid, haze, rain, humid, base, vapour] = along.map((name) => numbers.get(name) ?? []);
   const humidity = humid.map((share, frame) => (vapour[frame] < FEW * share ? NaN : share));
   const y = height.map((value) => (value === null ? NaN : value / 1000));
-  return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, haze, rain, humidity, base: base[0] ?? Infinity } }];
+  const moment = numbers.get("moment") ?? time;
+  const way = { temperature, pressure, liquid, haze, rain, humidity, moment, planned: line.planned ?? null, base: base[0] ?? Infinity };
+  const curve = { label: line.label, role: "data", index: 0, error: null };
+  if (!start?.length) return [{ ...curve, x: time, y, way }];
+  const first = { temperature: start[0] + 273.15, pressure: 100 * start[1], liquid: 0, haze: Infinity, rain: 0, humidity: NaN, moment: 0 };
+  for (const [name, value] of Object.entries(first)) if (way[name].length || !height.length) way[name] = [value, ...way[name]];
+  return [{ ...curve, x: [0, ...time], y: [line.planned?.y[0] ?? 0, ...y], way }];
 }
 
 // Draw the paths of all runs up to a time into a box of the canvas; `up` converts a height to a pixel.
@@ -43,27 +50,28 @@ export function drawAtmosphere(context, box, curves, time, up, unit) {
 
 // A path with its positions in the picture: vertical, each run in its own part, or from end to end over mountains.
 function placed({ x, y, way }, number, runs, time, box) {
-  const highest = y.reduce((most, value, place) => (value > y[most] ? place : most), 0);
-  const crosses = y[highest] - Math.min(...y.slice(highest)) > 0.1 * (Math.max(...y) - Math.min(...y));
-  const wide = box.width / runs, span = x.at(-1) - x[0] || 1;
+  const ground = way.planned ?? { moment: way.moment, y };
+  const highest = ground.y.reduce((most, value, place) => (value > ground.y[most] ? place : most), 0);
+  const crosses = ground.y[highest] - Math.min(...ground.y.slice(highest)) > 0.1 * (Math.max(...ground.y) - Math.min(...ground.y));
+  const wide = box.width / runs, [first, last] = [ground.moment[0], ground.moment.at(-1)];
   const now = time === null ? x.length - 1 : Math.max(0, x.findLastIndex((each) => each <= time));
-  const across = (place) => (crosses
-    ? box.left + box.width * (0.05 + 0.9 * (x[place] - x[0]) / span) : box.left + wide * (number + 0.3));
+  const at = (moment) => box.left + box.width * (0.03 + 0.94 * (moment - first) / (last - first || 1));
+  const across = (place) => (crosses ? at(way.moment[place]) : box.left + wide * (number + 0.3));
   const cloudy = (place) => way.liquid[place] > way.haze[place]; // more liquid than chance puts together without a cloud
   const seen = y.findIndex((_, place) => place <= now && cloudy(place));
   // a cloud begins where the run has measured its base, or where liquid was first seen to be one
   const base = seen < 0 ? null : y[way.base <= Math.max(...way.pressure) ? way.pressure.findIndex((value) => value <= way.base) : seen];
-  return { y, ...way, crosses, across, cloudy, now, wide, base };
+  return { y, ...way, crosses, across, cloudy, now, wide, base, slope: ground.y.map((height, place) => [at(ground.moment[place]), height]) };
 }
 
-function drawGround(context, box, { y, crosses, across }, up, colours) {
+function drawGround(context, box, { crosses, slope }, up, colours) {
   const bottom = box.top + box.height, right = box.left + box.width, below = crosses ? GAP * box.height : 0;
   context.fillStyle = crosses ? colours.rock : colours.ground;
   context.beginPath();
   context.moveTo(box.left, bottom);
-  context.lineTo(box.left, up(crosses ? y[0] : 0) + below);
-  if (crosses) y.forEach((height, place) => context.lineTo(across(place), up(height) + below));
-  context.lineTo(right, up(crosses ? y.at(-1) : 0) + below);
+  context.lineTo(box.left, up(crosses ? slope[0][1] : 0) + below);
+  if (crosses) for (const [x, height] of slope) context.lineTo(x, up(height) + below);
+  context.lineTo(right, up(crosses ? slope.at(-1)[1] : 0) + below);
   context.lineTo(right, bottom);
   context.fill();
 }

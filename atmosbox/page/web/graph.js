@@ -3,7 +3,7 @@
 import { drawAtmosphere } from "./atmosphere.js";
 import { curveColour, curveDash, look } from "./colour.js";
 import { logTicks, powerText, scaled, tickTexts, ticks } from "./figure.js";
-import { drawCurve, markerSvg } from "./ink.js";
+import { drawAreas, drawCurve, hollow, mark, markerSvg } from "./ink.js";
 import { drawSkewt, slanted } from "./skewt.js";
 import { explained } from "./notes.js";
 import { numbers, phrase, word } from "./words.js";
@@ -141,7 +141,11 @@ export class Graph {
         }
       }
     }
-    const { kind, planned } = this.panel;
+    const { kind, planned, start } = this.panel;
+    for (const [x, y] of [...this.curves.map(({ from }) => from), start].filter((point) => point?.length && kind !== "atmosphere" && (point[0] || !this.panel.x.log))) {
+      known.x.push(x);
+      known.y.push(y);
+    }
     this.waiting.hidden = known.y.length > 0 || planned?.y.length > 0;
     for (const axis of ["x", "y"]) known[axis].push(...(planned?.[axis] ?? []));
     this.held = known.y.length > 0;
@@ -164,7 +168,7 @@ export class Graph {
     }
     if (this.fixed) Object.assign(this.range, this.fixed);
     if (kind === "atmosphere" && known.y.length) {
-      const high = Math.max(...known.y, 1e-3);
+      const high = Math.max(...known.y.filter(Number.isFinite), 1e-3);
       this.range.y = [-0.12 * high, 1.1 * high];
     }
     if (kind === "skewt" && known.y.length) {
@@ -174,7 +178,7 @@ export class Graph {
 
   // The legend. If there are two runs, the colour tells the run, and the dashes tell the curve.
   #key() {
-    const key = this.part(".key"), told = JSON.stringify(this.curves.map((curve) => [curve.label, this.colour(curve)]));
+    const key = this.part(".key"), told = JSON.stringify(this.curves.map((curve) => [curve.label, this.colour(curve), curve.faint]));
     if (told === this.keyed) return;
     this.keyed = told;
     key.replaceChildren();
@@ -188,9 +192,17 @@ export class Graph {
       const wide = curve.role === "reference" ? 5 : 2.2;
       item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
         + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
-      item.append(explained(curve.label));
+      item.append(explained(curve.label), ...(curve.faint ? [`(${word("settling")})`] : []));
       key.append(item);
     }
+    if (!this.panel.areas) return;
+    ["CAPE", "CIN"].forEach((name, index) => {
+      const swatch = Object.assign(document.createElement("i"), { className: "swatch" });
+      swatch.style.background = curveColour("reference", index);
+      const item = document.createElement("span");
+      item.append(swatch, explained(name));
+      key.append(item);
+    });
   }
 
   colour({ role, index, run = 0 }) {
@@ -220,6 +232,7 @@ export class Graph {
       drawSkewt(context, this.panel, this.curves, this.foot, 10 ** this.range.y[0], (x, y) => this.#spot(x, y), unit);
     }
     this.#marks(context, bbox, unit);
+    if (this.panel.areas && this.curves.length) drawAreas(context, this.curves[0], (x, y) => this.#spot(x, y), bbox);
     if (this.panel.kind === "atmosphere") {
       drawAtmosphere(context, bbox, this.curves, this.time, (height) => this.#spot(0, height)[1], unit);
       context.restore();
@@ -229,7 +242,34 @@ export class Graph {
       spot: (x, y) => this.#spot(x, y), unit, across: this.panel.across, colour: this.colour(curve), several: this.#several(curve),
       floor: this.plot.valToPos(this.range.y[0], "y", true),
     });
+    this.#guides(context, bbox, unit);
     context.restore();
+  }
+
+  // Thin lines across the graph, with texts away from the first curve, and a ring where the curves begin.
+  #guides(context, { left, top, width, height }, unit) {
+    const curve = this.curves.find(({ role }) => role === "data"), { guides = [], start = [] } = this.panel;
+    context.strokeStyle = context.fillStyle = look().faint;
+    context.lineWidth = unit;
+    for (const [axis, value, words] of guides) {
+      const text = phrase(words), gap = 4 * unit, [x, y] = this.#spot(value, value), upright = axis === "x";
+      context.beginPath();
+      context.moveTo(...(upright ? [x, top] : [left, y]));
+      context.lineTo(...(upright ? [x, top + height] : [left + width, y]));
+      context.stroke();
+      const near = curve ? curve.x[curve.y.reduce((best, each, place) => (Math.abs(each - value) < Math.abs(curve.y[best] - value) ? place : best), 0)] : -Infinity;
+      const right = !upright && !(this.#spot(near, value)[0] > left + 0.7 * width);
+      context.textAlign = right ? "right" : "left";
+      context.fillText(text, upright ? x + gap : right ? left + width - gap : left + gap, upright ? top + height - gap : y - gap);
+    }
+    const [x, y] = curve?.from ?? (start[0] || !this.panel.x.log ? start : []);
+    if (y === undefined) return;
+    const spot = this.#spot(x, y), before = spot[0] > left + 0.8 * width;
+    context.fillStyle = context.strokeStyle = look().ink;
+    mark(context, spot, 0, 1.5 * unit);
+    hollow(context, unit);
+    context.textAlign = before ? "right" : "left";
+    context.fillText(word("start"), spot[0] + (before ? -8 : 8) * unit, Math.max(spot[1] - 5 * unit, top + 12 * unit));
   }
 
   #marks(context, bbox, unit) {

@@ -28,8 +28,9 @@ export class Graphs {
     for (const each of this.panels) {
       each.graph = new Graph(parent, this.#titled(each), { runs: runs.length, seek, whole: Boolean(seek) });
     }
-    // if the colours show numbers of neighbours, the frames hold no speeds; and a running box has room for four graphs
-    const rows = this.panels.reduce((sum, { panel }) => sum + (panel.kind === "skewt" ? 2 : 1), 0);
+    // if the colours show numbers of neighbours, the frames hold no speeds; and a running box has room for four graphs,
+    // of which a skew-T and the picture of a parcel take two
+    const rows = this.panels.reduce((sum, { panel }) => sum + (panel.kind === "skewt" || panel.kind === "atmosphere" ? 2 : 1), 0);
     const told = runs.every(({ stage }) => !stage.speed.counted) && (this.whole || rows < 4);
     this.speeds = told ? new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length }) : null;
     parent.dataset.count = this.panels.length + (told ? 1 : 0);

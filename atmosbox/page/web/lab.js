@@ -54,7 +54,7 @@ class Lab {
   hear(told) {
     if (told.type === "stage") this.open(told);
     else if (told.type === "series") this.append(told);
-    else if (told.type === "arrays") this.numbers?.replace(told.values);
+    else if (told.type === "arrays") this.numbers?.replace(told.values, told.settling);
     else if (told.type === "wind") this.stage?.blow(told);
     else if (told.type === "state") this.state(told);
     else if (told.type === "link") this.link.show(told.link);

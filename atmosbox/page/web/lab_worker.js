@@ -145,7 +145,9 @@ class Box {
     if (this.sample <= plan.samples) return true;
     machine.call("end_frame");
     Object.assign(this, { frame: this.frame + 1, sample: 1, fresh: true, inside: false });
-    if (this.frame - this.since > plan.settle) machine.call("note_frame");
+    const passed = this.frame - this.since; // while the box settles, averages are over the last half of the time
+    if (passed <= plan.settle ? Number.isInteger(Math.log2(passed)) : passed === plan.settle + 1) machine.call("begin_averages_anew");
+    machine.call("note_frame");
     const reading = machine.array("gauges.reading"), row = {};
     for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
     for (const { along, times, ...table } of plan.tables) {
@@ -232,7 +234,8 @@ class Box {
         values: Object.fromEntries(told.map((name) => [name, trace.column(name, trace.sent)])) });
       Object.assign(trace, { sent: trace.rows.length, reset: false });
     }
-    if (Object.keys(values).length) say({ type: "arrays", values });
+    const settling = this.frame - this.since <= plan.settle ? plan.profiles.map(([name]) => name) : [];
+    if (Object.keys(values).length) say({ type: "arrays", values, settling });
     if (plan.wind) say({ type: "wind", ...plan.wind, values: Array.from(machine.array("gauges.flow.wind"), (value) => value * plan.wind.factor) });
   }
 
