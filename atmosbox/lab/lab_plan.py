@@ -143,7 +143,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "ledger": Reading.LEDGER.value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
-        "gauges": [] if box.gauges.half.size else gauges(prepared.settings, series),
+        "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
         "profiles": profiles,
         "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),

@@ -34,7 +34,7 @@ def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, An
     """
     way = _ascent(tables, unit)
     for panel in panels:
-        panel["planned"] = {axis: list(panel["limits"][axis]) for axis in ("x", "y")}
+        panel["planned"] = {"x": [], "y": []}
         for line in panel["lines"]:
             points = {axis: _points(line[axis], way) for axis in ("x", "y")}
             if "minus" in line or not (points["x"] and points["y"]):

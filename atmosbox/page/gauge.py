@@ -1,4 +1,4 @@
-"""Thermometer, barometer, hygrometer and height beside a box that runs: which variable each shows, and in which unit."""
+"""Thermometer, barometer and hygrometer beside a box that runs: which variable each shows, and in which unit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ _GAUGES = (
     ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
     ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
     ("hygrometer", ("relative_humidity",), "%", 100.0, 0.0),
-    ("altimeter", ("parcel_height",), "km", 0.001, 0.0),
 )
 """For each gauge its name, the variables that it can show, and their unit, factor and offset from SI."""
 

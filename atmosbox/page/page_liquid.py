@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 __all__ = ["POOL", "RAIN", "SWELLING", "clumps", "layer", "places"]
 
-_A_CLUMP = 12.0  # molecules in a clump when all water has condensed
-_MOST = 40  # clumps
+_A_CLUMP = 2.0  # molecules in a clump when all water has condensed
+_MOST = 60  # clumps
 _MARGIN = 0.08  # share of the box at each side without clumps
-SWELLING = 0.55
+SWELLING = 1.6
 """Radius of a clump of one molecule, divided by the diameter with which a molecule of water is drawn."""
 POOL, RAIN = -1.0, -2.0
 """The kind of a layer, in place of a radius."""

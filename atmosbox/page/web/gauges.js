@@ -1,9 +1,9 @@
-// Thermometer, barometer, hygrometer and height above the box, readable from the last row, and read aloud on demand.
+// Thermometer, barometer and hygrometer above the box, readable from the last row, and read aloud on demand.
 
 import { figure } from "./figure.js";
 import { numbers, word } from "./words.js";
 
-const DIGITS = { "°C": 1, hPa: 0, "%": 0, km: 2 };
+const DIGITS = { "°C": 1, hPa: 0, "%": 0 };
 
 // A reading as text: with its scatter it has no more decimals than the scatter allows.
 const shown = ({ value, spread, unit }) => {
@@ -29,7 +29,7 @@ export class Gauges {
       if (number.textContent !== value) number.textContent = value;
       if (spread.textContent !== rest.join(" ")) spread.textContent = rest.join(" ");
       const size = gauge.spread ? `${figure(gauge.spread, 2)} ${gauge.unit.replace("°C", "K")}` : "";
-      button.onclick = () => this.tell(word(size || gauge.name === "altimeter" ? `why_${gauge.name}` : "why_one", { number: molecules, size }));
+      button.onclick = () => this.tell(word(size ? `why_${gauge.name}` : "why_one", { number: molecules, size }));
     }
     this.sentence = gauges.map((gauge) => `${word(gauge.name)} ${shown(gauge).join(" ")}`).join(", ");
   }

@@ -75,9 +75,10 @@ export class Graphs {
     else if (!this.whole && peak && (peak > 0.9 * this.highest || peak < 0.4 * this.highest)) this.highest = 1.5 * peak;
   }
 
-  // Write the means of what was measured since a moment beside those of theory.
+  // Write the means of what was measured since a moment beside those of theory, unless the curves are means already.
   compare(from) {
-    for (const { graph } of this.panels) if (graph.overTime) graph.say(meansOf(graph.curves, from, graph.panel.y.unit));
+    const told = this.panels.filter(({ graph, panel }) => graph.overTime && !panel.lines.some(({ y }) => y.name.startsWith("running_")));
+    for (const { graph } of told) graph.say(meansOf(graph.curves, from, graph.panel.y.unit));
   }
 
   repaint() {

@@ -87,7 +87,7 @@ class Lab {
     this.sheet = new Sheet([this.stage], () => this.graphs.repaint());
     this.walls = state.walls ?? null;
     find("story").textContent = story(record.story);
-    find("panel").hidden = false;
+    find("panel").hidden = !controls?.length && !lesson?.presets.length;
     this.lesson.offer(record.scene, lesson);
     const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
       record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
