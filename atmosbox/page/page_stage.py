@@ -24,10 +24,15 @@ Indices = NDArray[np.intp]
 
 _SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
 _CROWD = 800
-_BESIDE_DROPS, _BESIDE_MIST = 0.4, 0.6  # factors on that diameter in a scene with drops or a mist, so that these stand out
+_BESIDE_DROPS, _BESIDE_MIST = (
+    0.4,
+    0.6,
+)  # factors on that diameter in a scene with drops or a mist, so that these stand out
 ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
-_BEND = 0.5  # power of the speed that the colours of discs follow, because most discs are slower than half of the fastest
+_BEND = (
+    0.5  # power of the speed that the colours of discs follow, because most discs are slower than half of the fastest
+)
 NEIGHBOURS = 12.0
 """Upper end of the colour scale where colours show the number of neighbours."""
 _PARTICLES = {False: "molecule", True: "disc"}
@@ -237,7 +242,13 @@ def stage(
         "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
-        "speed": {"unit": "m/s", "low": 0.0, "high": fastest if counted else round_up(fastest), "counted": counted, "bend": _BEND if discs else 1.0},
+        "speed": {
+            "unit": "m/s",
+            "low": 0.0,
+            "high": fastest if counted else round_up(fastest),
+            "counted": counted,
+            "bend": _BEND if discs else 1.0,
+        },
         "panels": [
             panel_record(
                 panel,

@@ -13,7 +13,7 @@ const LOOKS = {
     theory: ["#1a1a1a", "#5a5a5a", "#808080"],
     environment: ["#009e73", "#b4568f"],
     reference: ["#e69f00", "#56b4e9"],
-    species: { "dry air": "#8592a3", water: "#1f86d6", molecule: "#8592a3", disc: "#8592a3", "light half": "#0072b2", "heavy half": "#d55e00", "gas from the left": "#0072b2", "gas from the right": "#e69f00" },
+    species: { "dry air": "#9ca8b6", water: "#1f86d6", molecule: "#8592a3", disc: "#8592a3", "light half": "#0072b2", "heavy half": "#d55e00", "gas from the left": "#0072b2", "gas from the right": "#e69f00" },
     background: "#f4f6f9", card: "#ffffff", edge: "#5d6b7c", metal: "#a9b4c0", liquid: "#2b8fdb", traced: "#d55e00",
     sky: "#a5cbe6", cloud: "#ffffff", ink: "#1a1f26", faint: "#5f6b79", grid: "#dfe4ea", cold: "#3f7fd0", warm: "#e0672a", mild: "#cfc4b2",
   },

@@ -95,8 +95,8 @@ class Box {
   gauges() {
     const rows = this.trace.rows.slice(-FRAMES), last = rows.at(-1) ?? {};
     return this.plan.gauges.flatMap(({ name, variable, unit, factor, offset, few }) => {
-      const seen = rows.filter((row) => !few || row[few[0]] >= few[1] * row[variable]).map((row) => row[variable]).filter(Number.isFinite);
-      if (!seen.length) return [];
+      const seen = rows.map((row) => row[variable]).filter(Number.isFinite);
+      if (!seen.length || (few && !(last[few[0]] >= few[1] * last[variable]))) return [];
       const mean = seen.reduce((sum, value) => sum + value, 0) / seen.length;
       const steady = !this.plan.ends && this.frame - this.since >= FRAMES + this.plan.settle && seen.length === FRAMES;
       const measured = steady ? Math.sqrt(seen.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (FRAMES - 1)) : NaN;
