@@ -22,6 +22,7 @@ from atmosbox.lab.moist_plan import (
     planned_alone,
     water_readings,
 )
+from atmosbox.lab.planned_ascent import show_plan
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.lab.well_lab_box import drop_readings, has_bath
@@ -49,8 +50,9 @@ STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "g
 
 _CROSSINGS = 4.0
 _WHOLE = 60.0
+"""Least time that the usual pace takes for a whole run [s]."""
 _SOON = 30.0
-"""Least time that the usual pace takes for the run of air that turns over [s], so that rolls are soon seen."""
+"""The same for air that turns over, so that rolls are soon seen, and the time that an ascent takes [s]."""
 _TIME = "elapsed_time"
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _SLOWEST = 0.15
@@ -106,12 +108,14 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     if box.attracts:
         readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
     curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
+    unit = setup.scale.time / _SECONDS[setup.time_unit]
+    show_plan(stage.record["panels"], curves, unit)
     series = {name for name, _, _ in readings} | {name for table in curves for name in table["curves"]}
     plan = {
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
-            "settle": 0.0 if setup.ends else setup.settle * setup.frame * setup.scale.time / _SECONDS[setup.time_unit],
+            "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
             "lesson": _lesson(prepared, series, setup.time_unit),
         },
         "base": BASE,
@@ -129,8 +133,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
         "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
-        "rate": _rate(setup, _SOON if _has_wind(box) else _WHOLE),
-        "time": setup.scale.time / _SECONDS[setup.time_unit],
+        "rate": _rate(setup, _SOON if setup.ends or _has_wind(box) else _WHOLE),
+        "time": unit,
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
         # how the scale of speeds follows the temperature

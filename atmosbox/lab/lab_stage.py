@@ -1,9 +1,8 @@
-"""What a page shows of a box that runs, and gets once: its stage, its graphs, and the planned ascent on their axes."""
+"""What a page shows of a box that runs, and gets once: its stage and its graphs."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.word import card_of
-from atmosbox.scene.conversion import phrase, to_si
-from atmosbox.scene.instruments import Environment, wall_laws
+from atmosbox.scene.conversion import phrase
+from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.panels import without_headlines
 from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
@@ -30,7 +29,6 @@ COLDER = 0.5
 """Share of the scale of speeds: if the speeds reach less of it, the page takes another scale."""
 
 _FASTEST = 3.0
-_PLACES = 60
 _TIME = "elapsed_time"
 
 Array = NDArray[np.float64]
@@ -113,10 +111,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         discs=any(panel.kind == "discs" for panel in panels),
         counted=counted,
     )
-    way = _planned_ascent(setup)
     made.record["card"] = card_of(module.__doc__ or "")
-    for record in made.record["panels"]:
-        record["planned"] = _points(record, way)
     return made, fast * scale.velocity / math.sqrt(scale.temperature)
 
 
@@ -146,45 +141,6 @@ def _swift(mass: Array) -> float:
         rare = np.exp(-0.5 * _FASTEST**2 * middle * known).mean() < math.exp(-0.5 * _FASTEST**2)
         low, high = (low, middle) if rare else (middle, high)
     return _FASTEST * math.sqrt(high)
-
-
-def _planned_ascent(setup: Setup) -> dict[str, Array]:
-    """Return the planned ascent of a parcel by the names of variables [SI]; empty for another box.
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.preparation import build, prepare
-    >>> way = _planned_ascent(build(prepare("lifting-dry", {"molecules": 100})))
-    >>> [round(float(p) / 100.0) for p in way["environment_pressure"][[0, -1]]]
-    [1000, 300]
-    """
-    found = (getattr(instrument, "environment", None) for instrument in setup.instruments)
-    around = next((each for each in found if isinstance(each, Environment)), None)
-    if not setup.ends or around is None:
-        return {}
-    seconds = np.linspace(0.0, setup.duration * setup.scale.time, _PLACES)
-    pressure = np.array([around.pressure(t) for t in seconds])
-    way = {
-        _TIME: seconds / to_si(1.0, setup.time_unit),
-        "parcel_height": np.array([around.height(t) for t in seconds]),
-        "parcel_pressure": pressure,
-        "environment_pressure": pressure,
-        "environment_temperature": np.array([around.temperature(t) for t in seconds]),
-        "adiabat_temperature": np.array([around.adiabat(p) for p in pressure]),
-    }
-    return {name: values for name, values in way.items() if np.isfinite(values).all()}
-
-
-def _points(panel: Mapping[str, Any], way: Mapping[str, Array]) -> dict[str, list[float]]:
-    """Return the points of a planned ascent that the axes of a panel must include, in the units of the panel."""
-    points: dict[str, list[float]] = {"x": [], "y": []}
-    for line in panel["lines"]:
-        if "minus" in line or not {line["x"]["name"], line["y"]["name"]} <= set(way):
-            continue
-        for axis in ("x", "y"):
-            values = way[line[axis]["name"]] * line[axis]["factor"] + line[axis]["offset"]
-            points[axis] += [float(f"{value:.5g}") for value in values if math.isfinite(value)]
-    return points
 
 
 def _said(value: object, unit: str) -> str:

@@ -24,6 +24,7 @@ MODULES = (
     "frames.js",
     "clock.js",
     "molecules.js",
+    "mist.js",
     "walls.js",
     "labels.js",
     "trace.js",

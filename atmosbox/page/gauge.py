@@ -13,11 +13,11 @@ __all__ = ["gauges"]
 _FEW = 50
 """Smallest number of molecules of saturated vapour for a hygrometer; with fewer it scatters by more than a seventh."""
 _GAUGES = (
-    ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
-    ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
+    ("thermometer", ("parcel_temperature", "air_temperature", "gas_temperature"), "°C", 1.0, -273.15),
+    ("barometer", ("parcel_pressure", "air_pressure"), "hPa", 0.01, 0.0),
     ("hygrometer", ("relative_humidity",), "%", 100.0, 0.0),
 )
-"""For each gauge its name, the variables that it can show, and their unit, factor and offset from SI."""
+"""For each gauge its name, the variables that it can show, best first, and their unit, factor and offset from SI."""
 
 
 def gauges(settings: SceneSettings, measured: Collection[str]) -> list[dict[str, Any]]:

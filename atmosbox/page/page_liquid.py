@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 __all__ = ["POOL", "RAIN", "SWELLING", "clumps", "layer", "places"]
 
-_A_CLUMP = 12.0  # molecules in a clump when all water has condensed
+_A_CLUMP = 2.0  # molecules in a clump when all water has condensed
 _MOST = 40  # clumps
 _MARGIN = 0.08  # share of the box at each side without clumps
-SWELLING = 0.55
+SWELLING = 1.6
 """Radius of a clump of one molecule, divided by the diameter with which a molecule of water is drawn."""
 POOL, RAIN = -1.0, -2.0
 """The kind of a layer, in place of a radius."""
@@ -46,7 +46,7 @@ def clumps(number: int, water: int, length: Floats, diameter: float) -> Floats:
     --------
     >>> few, many = (clumps(number, 120, np.ones(3), 0.01) for number in (20, 120))
     >>> len(few), len(many), round(float((many[0, 3] / few[0, 3]) ** 3), 9)
-    (10, 10, 6.0)
+    (20, 40, 3.0)
     """
     if number <= 0:
         return np.zeros((0, 4))
@@ -63,7 +63,7 @@ def places(water: int) -> Floats:
 
     Examples
     --------
-    >>> places(24).round(2).tolist()
+    >>> places(4).round(2).tolist()
     [[0.5, 0.36, 0.25], [0.29, 0.64, 0.42]]
     """
     count = int(np.clip(round(water / _A_CLUMP), 1, _MOST))

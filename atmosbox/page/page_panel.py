@@ -131,6 +131,10 @@ def panel_record(
         **({"along": ATMOSPHERE_VARIABLES} if panel.kind == "atmosphere" else {}),
         "sentences": list(sentences),
         "marks": marks or {},
+        "start": list(panel.start),
+        "guides": [list(guide) for guide in panel.guides],
+        "limits": {"x": list(panel.x_limits), "y": list(panel.y_limits)},
+        "areas": panel.areas,
         **{
             axis: {
                 "label": labels[axis],

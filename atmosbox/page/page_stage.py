@@ -24,9 +24,15 @@ Indices = NDArray[np.intp]
 
 _SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
 _CROWD = 800
-_BESIDE_DROPS = 0.4  # factor on that diameter in a scene with drops, so that the drops stand out
+_BESIDE_DROPS, _BESIDE_MIST = (
+    0.4,
+    0.6,
+)  # factors on that diameter in a scene with drops or a mist, so that these stand out
 ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
+_BEND = (
+    0.5  # power of the speed that the colours of discs follow, because most discs are slower than half of the fastest
+)
 NEIGHBOURS = 12.0
 """Upper end of the colour scale where colours show the number of neighbours."""
 _PARTICLES = {False: "molecule", True: "disc"}
@@ -197,7 +203,9 @@ def stage(
     shown = chosen(len(heavy), most, wet)
     kinds, kind = _kinds(heavy, wet, None if right is None else np.asarray(right, np.bool_), discs=discs)
     lengths = np.array([side for axis, side in enumerate(box.length) if not (box.planar and axis == 1)])
-    room = float(np.exp(np.log(lengths).mean())) * (_BESIDE_DROPS if drops else 1.0)
+    misty = wet is not None and bool(wet.any()) and box.walls[4] != "pool"
+    beside = _BESIDE_DROPS if drops else _BESIDE_MIST if misty else 1.0
+    room = float(np.exp(np.log(lengths).mean())) * beside
     wider, said = _width(wide, room, len(shown), discs=discs, unit=box.unit)
     drawn = wide * wider
     if not discs and np.ptp(wide[np.isfinite(wide)]) == 0.0:
@@ -228,13 +236,19 @@ def stage(
         "molecules_shown": len(shown),
         "exaggeration": said,
         "metre": box.metre,
-        "box": box.as_record(),
+        "box": box.as_record() | {"misty": misty and not drops},
         "species": species,
         "kind": kind[shown].tolist(),
         "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
-        "speed": {"unit": "m/s", "low": 0.0, "high": fastest if counted else round_up(fastest), "counted": counted},
+        "speed": {
+            "unit": "m/s",
+            "low": 0.0,
+            "high": fastest if counted else round_up(fastest),
+            "counted": counted,
+            "bend": _BEND if discs else 1.0,
+        },
         "panels": [
             panel_record(
                 panel,

@@ -612,3 +612,41 @@ def test_a_thermometer_tells_its_scatter_and_why_and_means_stand_beside_theory(l
     assert 0.2 < float(error) < 3.0
     page.locator(".term", has_text="n k T").click()
     page.locator("#notes .note", has_text="Z is a little more than 1").wait_for(timeout=5_000)
+
+
+KEEPS_TEXTS = """() => {
+  window.texts = new Set();
+  const canvas = CanvasRenderingContext2D.prototype, write = canvas.fillText;
+  canvas.fillText = function (text, ...at) { window.texts.add(text); write.call(this, text, ...at); };
+}"""
+
+
+@pytest.mark.parametrize(
+    ("scene", "kind", "curves", "texts"),
+    [
+        ("lifting-sounding", "skewt", ["environment", "dewpoint"], {"27 °C", "1000 hPa", "0.0 km"}),
+        ("lifting-moist", "profile", ["without condensation", "environment"], {"cloud base, theory", "start", "25 °C"}),
+    ],
+)
+def test_the_air_around_a_parcel_and_its_start_are_drawn_before_it_moves(lab, scene, kind, curves, texts):
+    page = lab(scene, SMALL[scene][0]).page
+    page.evaluate(KEEPS_TEXTS)
+    page.click("#theme")  # all graphs are drawn again
+    page.wait_for_function("(wanted) => wanted.every((text) => window.texts.has(text))", arg=sorted(texts))
+    assert page.locator(f".graph.{kind} .key").first.locator("span").all_inner_texts() == curves
+
+
+def test_profiles_are_drawn_faint_while_a_column_settles(lab):
+    settle = build(prepare("atmosphere", {"molecules": 1000})).settle
+    shown = lab("atmosphere", {"molecules": 1000})
+    keys = shown.page.locator(".graph.profile .key")
+    assert keys.first.inner_text() == ""
+    for frames, label in (
+        (2, "molecules\u00a0(settling)"),
+        (settle, "molecules\u00a0(settling)"),
+        (settle + 1, "molecules"),
+    ):
+        shown.ask(type="frames", value=frames)
+        shown.digest()  # by then the engine has told the page
+        shown.page.wait_for_timeout(400)
+        assert [label in key.locator("span").all_text_contents() for key in keys.all()] == [True, True], frames

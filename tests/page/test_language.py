@@ -39,6 +39,8 @@ def said_by_scenes():
         found |= {module.title, (module.__doc__ or "").split("\n\n")[0].replace("\n", " ")}
         for panel in panels:
             found |= {panel.title, panel.x_label, panel.y_label} | {line.label for line in panel.lines}
+            found |= {re.sub(r"[\d.]+", "{}", words) for _, _, words in panel.guides}
+            found |= {"CAPE", "CIN"} if panel.areas else set()
         small = {"molecules": 200} if hasattr(settings, "molecules") else {}
         box = build(prepare(name, small))
         lesson = lesson_of(module)

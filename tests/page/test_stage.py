@@ -41,7 +41,7 @@ def test_discs_keep_their_own_sizes_and_are_halves_by_mass():
     assert told.record["particle"] == "disc"
 
 
-@pytest.mark.parametrize(("floor", "drops"), [("pool", 1), ("specular", 2)])
+@pytest.mark.parametrize(("floor", "drops"), [("pool", 1), ("specular", 10)])
 def test_a_pool_is_a_layer_and_a_mist_is_clumps(floor, drops):
     box = Box(NANO.length, walls=("specular",) * 4 + (floor, "specular"))
     told = air(box=box, water=np.arange(50) < 20)

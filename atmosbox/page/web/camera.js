@@ -7,6 +7,7 @@ import { scaled } from "./figure.js";
 const DEGREES = Math.PI / 180;
 const MARGIN = [64, 58]; // pixels around the box, for the numbers at its edges
 const NARROW = 0.16, LOW = 200; // share of a picture that a margin may take; a picture that is lower has none [pixel]
+const FLAT = 0.6, STEEP = 32; // a box that is lower, in widths, is seen from the corner at this elevation [degree]
 
 // Direction of the camera by azimuth and elevation [degree]; `closer` divides the distance from which all of the box is
 // seen.
@@ -42,8 +43,8 @@ export class Camera {
   // Move the camera to one of the places, at a distance from which the highest box of the run is in the picture.
   go(place) {
     this.place = place;
-    const { azimuth, elevation, closer } = PLACES[place];
-    const [x, y, z] = this.room();
+    const { azimuth, closer, ...seen } = PLACES[place], [x, y, z] = this.room();
+    const elevation = place === 0 && z < FLAT * Math.min(x, y) ? STEEP : seen.elevation;
     const middle = new THREE.Vector3(x / 2, y / 2, z / 2);
     const side = new THREE.Vector3(
       Math.cos(azimuth * DEGREES) * Math.cos(elevation * DEGREES),

@@ -13,9 +13,9 @@ const LOOKS = {
     theory: ["#1a1a1a", "#5a5a5a", "#808080"],
     environment: ["#009e73", "#b4568f"],
     reference: ["#e69f00", "#56b4e9"],
-    species: { "dry air": "#8592a3", water: "#1f86d6", molecule: "#8592a3", disc: "#8592a3", "light half": "#0072b2", "heavy half": "#d55e00", "gas from the left": "#0072b2", "gas from the right": "#e69f00" },
+    species: { "dry air": "#9ca8b6", water: "#1f86d6", molecule: "#8592a3", disc: "#8592a3", "light half": "#0072b2", "heavy half": "#d55e00", "gas from the left": "#0072b2", "gas from the right": "#e69f00" },
     background: "#f4f6f9", card: "#ffffff", edge: "#5d6b7c", metal: "#a9b4c0", liquid: "#2b8fdb", traced: "#d55e00",
-    ink: "#1a1f26", faint: "#5f6b79", grid: "#dfe4ea", cold: "#3f7fd0", warm: "#e0672a", mild: "#cfc4b2",
+    sky: "#a5cbe6", cloud: "#ffffff", ink: "#1a1f26", faint: "#5f6b79", grid: "#dfe4ea", cold: "#3f7fd0", warm: "#e0672a", mild: "#cfc4b2",
   },
   dark: {
     data: ["#56aee8", "#f0843c", "#e39bc4", "#9ad8ff"],
@@ -24,7 +24,7 @@ const LOOKS = {
     reference: ["#e69f00", "#56b4e9"],
     species: { "dry air": "#aab5c2", water: "#4aaef5", molecule: "#aab5c2", disc: "#aab5c2", "light half": "#56aee8", "heavy half": "#f0843c", "gas from the left": "#56aee8", "gas from the right": "#f0b03c" },
     background: "#12161c", card: "#1a2028", edge: "#8492a3", metal: "#76828f", liquid: "#3fa2ee", traced: "#ff9a4d",
-    ink: "#eef2f6", faint: "#9aa6b4", grid: "#2a323c", cold: "#4d8fe6", warm: "#f07a3a", mild: "#7d766b",
+    sky: "#23415a", cloud: "#dfe6ee", ink: "#eef2f6", faint: "#9aa6b4", grid: "#2a323c", cold: "#4d8fe6", warm: "#f07a3a", mild: "#7d766b",
   },
 };
 
@@ -57,8 +57,8 @@ export function speedColour(share) {
   return mix(VIRIDIS[low], VIRIDIS[low + 1], place - low);
 }
 
-export const speedGradient = () =>
-  `linear-gradient(to right, ${VIRIDIS.map((each) => css(each)).join(", ")})`;
+export const speedGradient = (bend) =>
+  `linear-gradient(to right, ${VIRIDIS.map((_, place) => css(speedColour((place / (VIRIDIS.length - 1)) ** bend))).join(", ")})`;
 
 export function wallColour(kelvin) {
   const { cold, mild, warm } = look();

@@ -9,6 +9,7 @@ export class Numbers {
   constructor({ values = {}, timed = [] } = {}) {
     this.values = { ...values };
     this.timed = new Set(timed);
+    this.settling = new Set();
   }
 
   get(name) {
@@ -35,7 +36,9 @@ export class Numbers {
     }
   }
 
-  replace(arrays) {
+  // `settling` are the names of those that are averages of a box that is not yet in equilibrium.
+  replace(arrays, settling = []) {
+    this.settling = new Set(settling);
     for (const [name, values] of Object.entries(arrays)) {
       this.values[name] = Array.isArray(values) ? values : [values];
     }
@@ -44,6 +47,7 @@ export class Numbers {
   clear() {
     this.values = {};
     this.timed.clear();
+    this.settling.clear();
   }
 }
 
@@ -67,6 +71,7 @@ export function curvesOf(panel, numbers) {
 }
 
 function curveOf(panel, line, numbers) {
+  if (line.planned) return { label: line.label, role: line.role, ...line.planned, error: null, steps: false, instants: null }; // known from the start
   const [across, up] = [numbers.get(line.x.name), numbers.get(line.y.name)];
   if (!across?.length || !up?.length) return null;
   const count = Math.max(across.length, up.length);
@@ -76,7 +81,8 @@ function curveOf(panel, line, numbers) {
     if (panel.across) x = x.map((value, place) => value - base[place]);
     else y = y.map((value, place) => value - base[place]);
   }
-  const spread = line.error && numbers.get(line.error.name);
+  const faint = numbers.settling.has(line.x.name) || numbers.settling.has(line.y.name);
+  const spread = faint || !line.error ? null : numbers.get(line.error.name);
   if (line.worst && spread?.some(Number.isFinite)) { // a temperature that is hardly known is not drawn
     const values = panel.across ? across : up, draw = panel.across ? x : y;
     values.forEach((value, place) => {
@@ -86,11 +92,18 @@ function curveOf(panel, line, numbers) {
   const error = spread?.length ? along(shown(spread, line.error), count) : null;
   const timed = numbers.timed.has(line.x.name) || numbers.timed.has(line.y.name);
   const clean = (values, { log }) => (log ? values.map((value) => (value > 0 ? value : NaN)) : values);
-  let curve = { label: line.label, role: line.role, x: clean(x, panel.x), y: clean(y, panel.y), error };
+  let curve = { label: line.label, role: line.role, x: clean(x, panel.x), y: clean(y, panel.y), error, faint };
   curve.steps = panel.kind === "histogram" && line.role === "data";
   curve.instants = timed && panel.across ? numbers.get("elapsed_time") : null;
   if (panel.averages && line.role === "data" && !error) curve = { ...curve, ...averaged(curve, panel) };
-  return curve;
+  return { ...curve, from: startOf(curve, panel) };
+}
+
+// The point from which a curve is drawn, before the first frame; null if the panel does not know it.
+function startOf({ role, x }, { kind, start, x: axis }) {
+  const begins = role === "data" || (kind === "profile" && (role === "theory" || role === "environment"));
+  if (!start?.length || !begins || !x.length) return null;
+  return [start[0] || !axis.log ? start[0] : x.find(Number.isFinite) / 2, start[1]]; // half a frame from the first on a logarithmic axis
 }
 
 // Means of x and y over equal parts of the x axis that contain values, and the scatter of y in each.

@@ -3,7 +3,7 @@
 import { drawAtmosphere } from "./atmosphere.js";
 import { curveColour, curveDash, look } from "./colour.js";
 import { logTicks, powerText, scaled, tickTexts, ticks } from "./figure.js";
-import { drawCurve, markerSvg } from "./ink.js";
+import { drawAreas, drawCurve, hollow, mark, markerSvg } from "./ink.js";
 import { drawSkewt, slanted } from "./skewt.js";
 import { explained } from "./notes.js";
 import { numbers, phrase, word } from "./words.js";
@@ -126,25 +126,28 @@ export class Graph {
   }
 
   #measure() {
-    const known = { x: [], y: [] };
-    const histogram = this.panel.kind === "histogram"; // its axis ends where data and theory are negligible
+    const known = { x: [], y: [] }, { kind, planned, start, limits, across } = this.panel;
+    const inside = (value, [one, other] = []) => one === undefined || (value - one) * (value - other) <= 0;
+    const add = (x, y) => {
+      if (!Number.isFinite(x) || !Number.isFinite(y) || !inside(x, limits?.x) || !inside(y, limits?.y)) return;
+      known.x.push(x);
+      known.y.push(y);
+    };
+    const histogram = kind === "histogram"; // its axis ends where data and theory are negligible
     const least = histogram ? 1e-3 * Math.max(0, ...this.curves.flatMap(({ y }) => y.filter(Number.isFinite))) : -Infinity;
-    for (const { x, y, error } of this.curves) {
+    for (const { x, y, error, from } of this.curves) {
       const last = histogram ? y.findLastIndex((value) => value > least) : x.length - 1;
       for (let index = 0; index <= last; index += 1) {
-        if (!Number.isFinite(x[index]) || !Number.isFinite(y[index])) continue;
         const spread = Number.isFinite(error?.[index]) ? error[index] : 0;
-        const across = this.panel.across;
-        for (const sign of spread ? [-1, 1] : [0]) {
-          known.x.push(x[index] + (across ? sign * spread : 0));
-          known.y.push(y[index] + (across ? 0 : sign * spread));
-        }
+        for (const sign of spread ? [-1, 1] : [0]) add(x[index] + (across ? sign * spread : 0), y[index] + (across ? 0 : sign * spread));
       }
+      if (from) add(...from);
     }
-    const { kind, planned } = this.panel;
-    this.waiting.hidden = known.y.length > 0 || planned?.y.length > 0;
-    for (const axis of ["x", "y"]) known[axis].push(...(planned?.[axis] ?? []));
     this.held = known.y.length > 0;
+    if (start?.length && kind !== "atmosphere" && (start[0] || !this.panel.x.log)) add(...start);
+    planned?.x.forEach((x, place) => add(x, planned.y[place]));
+    this.waiting.hidden = known.y.length > 0;
+    this.held ||= known.y.length > 1;
     if (kind === "skewt" && known.y.length) {
       this.foot = Math.max(...known.y) * 1.02;
       known.x = known.x.map((value, index) => slanted(value, known.y[index], this.foot));
@@ -160,12 +163,13 @@ export class Graph {
       if (kind === "histogram") [low, margin] = [axis === "y" ? 0 : Math.max(0, low), 0.03];
       const floor = !log && low >= 0 && low < 0.2 * high && (kind === "profile" || (axis === "x" && kind === "line"));
       const span = high - low;
-      this.range[axis] = [floor || (kind === "histogram" && low === 0) ? Math.min(low, 0) : low - margin * span, high + margin * span];
+      const ends = limits?.[axis].map(this.to[axis]).toSorted((one, other) => one - other) ?? [];
+      this.range[axis] = ends.length ? ends : [floor || (kind === "histogram" && low === 0) ? Math.min(low, 0) : low - margin * span, high + margin * span];
     }
     if (this.fixed) Object.assign(this.range, this.fixed);
     if (kind === "atmosphere" && known.y.length) {
       const high = Math.max(...known.y, 1e-3);
-      this.range.y = [-0.12 * high, 1.1 * high];
+      this.range.y = [-0.12 * high, (this.curves.some(({ way }) => way.crosses) ? 1.4 : 1.1) * high];
     }
     if (kind === "skewt" && known.y.length) {
       this.range.y = [Math.log10(Math.min(...known.y) / 1.02), Math.log10(this.foot)];
@@ -174,7 +178,7 @@ export class Graph {
 
   // The legend. If there are two runs, the colour tells the run, and the dashes tell the curve.
   #key() {
-    const key = this.part(".key"), told = JSON.stringify(this.curves.map((curve) => [curve.label, this.colour(curve)]));
+    const key = this.part(".key"), told = JSON.stringify(this.curves.map((curve) => [curve.label, this.colour(curve), curve.faint]));
     if (told === this.keyed) return;
     this.keyed = told;
     key.replaceChildren();
@@ -188,9 +192,17 @@ export class Graph {
       const wide = curve.role === "reference" ? 5 : 2.2;
       item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
         + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
-      item.append(explained(curve.label));
+      item.append(explained(curve.label), ...(curve.faint ? [`\u00a0(${word("settling")})`] : []));
       key.append(item);
     }
+    if (!this.panel.areas) return;
+    ["CAPE", "CIN"].forEach((name, index) => {
+      const swatch = Object.assign(document.createElement("i"), { className: "swatch" });
+      swatch.style.background = curveColour("reference", index);
+      const item = document.createElement("span");
+      item.append(swatch, explained(name));
+      key.append(item);
+    });
   }
 
   colour({ role, index, run = 0 }) {
@@ -220,6 +232,7 @@ export class Graph {
       drawSkewt(context, this.panel, this.curves, this.foot, 10 ** this.range.y[0], (x, y) => this.#spot(x, y), unit);
     }
     this.#marks(context, bbox, unit);
+    if (this.panel.areas && this.curves.length) drawAreas(context, this.curves[0], (x, y) => this.#spot(x, y), bbox);
     if (this.panel.kind === "atmosphere") {
       drawAtmosphere(context, bbox, this.curves, this.time, (height) => this.#spot(0, height)[1], unit);
       context.restore();
@@ -229,6 +242,42 @@ export class Graph {
       spot: (x, y) => this.#spot(x, y), unit, across: this.panel.across, colour: this.colour(curve), several: this.#several(curve),
       floor: this.plot.valToPos(this.range.y[0], "y", true),
     });
+    this.#guides(context, bbox, unit);
+    context.restore();
+    this.#start(context, bbox, unit);
+  }
+
+  // Thin lines across the graph, with texts away from the first curve.
+  #guides(context, { left, top, width, height }, unit) {
+    const curve = this.curves.find(({ role }) => role === "data"), { guides = [] } = this.held ? this.panel : {};
+    context.strokeStyle = context.fillStyle = look().faint;
+    context.lineWidth = unit;
+    for (const [axis, value, words] of guides) {
+      const text = phrase(words), gap = 4 * unit, [x, y] = this.#spot(value, value), upright = axis === "x";
+      context.beginPath();
+      context.moveTo(...(upright ? [x, top] : [left, y]));
+      context.lineTo(...(upright ? [x, top + height] : [left + width, y]));
+      context.stroke();
+      const near = curve ? curve.x[curve.y.reduce((best, each, place) => (Math.abs(each - value) < Math.abs(curve.y[best] - value) ? place : best), 0)] : -Infinity;
+      const right = !upright && !(this.#spot(near, value)[0] > left + 0.7 * width);
+      context.textAlign = right ? "right" : "left";
+      context.fillText(text, upright ? x + gap : right ? left + width - gap : left + gap, upright ? top + height - gap : y - gap);
+    }
+  }
+
+  // A ring where the curves begin.
+  #start(context, { left, top, width }, unit) {
+    const { start = [], x: axis } = this.panel;
+    const [x, y] = this.curves.find(({ from }) => from)?.from ?? (start[0] || !axis.log ? start : []);
+    if (y === undefined) return;
+    context.save();
+    context.font = font(scaled(12) * unit);
+    const spot = this.#spot(x, y), before = spot[0] > left + 0.8 * width;
+    context.fillStyle = context.strokeStyle = look().ink;
+    mark(context, spot, 0, 1.5 * unit);
+    hollow(context, unit);
+    context.textAlign = before ? "right" : "left";
+    context.fillText(word("start"), spot[0] + (before ? -8 : 8) * unit, spot[1] + (spot[1] < top + 16 * unit ? 14 : before ? 4 : -6) * unit);
     context.restore();
   }
 

@@ -28,8 +28,9 @@ export class Graphs {
     for (const each of this.panels) {
       each.graph = new Graph(parent, this.#titled(each), { runs: runs.length, seek, whole: Boolean(seek) });
     }
-    // if the colours show numbers of neighbours, the frames hold no speeds; and a running box has room for four graphs
-    const rows = this.panels.reduce((sum, { panel }) => sum + (panel.kind === "skewt" ? 2 : 1), 0);
+    // if the colours show numbers of neighbours, the frames hold no speeds; and a running box has room for four graphs,
+    // of which a skew-T and the picture of a parcel take two
+    const rows = this.panels.reduce((sum, { panel }) => sum + (panel.kind === "skewt" || panel.kind === "atmosphere" ? 2 : 1), 0);
     const told = runs.every(({ stage }) => !stage.speed.counted) && (this.whole || rows < 4);
     this.speeds = told ? new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length }) : null;
     parent.dataset.count = this.panels.length + (told ? 1 : 0);
@@ -74,9 +75,10 @@ export class Graphs {
     else if (!this.whole && peak && (peak > 0.9 * this.highest || peak < 0.4 * this.highest)) this.highest = 1.5 * peak;
   }
 
-  // Write the means of what was measured since a moment beside those of theory.
+  // Write the means of what was measured since a moment beside those of theory, unless the curves are means already.
   compare(from) {
-    for (const { graph } of this.panels) if (graph.overTime) graph.say(meansOf(graph.curves, from, graph.panel.y.unit));
+    const told = this.panels.filter(({ graph, panel }) => graph.overTime && !panel.lines.some(({ y }) => y.name.startsWith("running_")));
+    for (const { graph } of told) graph.say(meansOf(graph.curves, from, graph.panel.y.unit));
   }
 
   repaint() {

@@ -1,8 +1,9 @@
 // Drawing of curves: lines and bands, points and bars, steps; each with a second cue besides its colour.
 
-import { curveDash, look } from "./colour.js";
+import { css, curveColour, curveDash, look, parse } from "./colour.js";
 
 const MOST_POINTS = 40; // at most this many measured values are points with bars, more are a line with a band
+const FAINT = 0.45; // opacity of averages of a box that is not yet in equilibrium
 const MOST_CROSSINGS = 25; // of its own range; a curve with more is drawn thinner
 
 export function markerSvg(index, colour) {
@@ -15,8 +16,8 @@ export function markerSvg(index, colour) {
 }
 
 export function drawCurve(context, curve, { spot, unit, across, colour, several, floor }) {
-  const { x, y, error, role, index } = curve;
-  context.strokeStyle = context.fillStyle = colour;
+  const { x, y, error, role, index, from } = curve;
+  context.strokeStyle = context.fillStyle = curve.faint ? css(parse(colour), FAINT) : colour;
   context.lineJoin = "round";
   if (curve.steps) return drawSteps(context, curve, spot, unit, floor);
   const points = x.map((value, place) => spot(value, y[place]));
@@ -27,7 +28,7 @@ export function drawCurve(context, curve, { spot, unit, across, colour, several,
   context.setLineDash(curveDash(role, index).map((part) => part * unit));
   context.beginPath();
   let down = false;
-  for (const [px, py] of points) {
+  for (const [px, py] of from ? [spot(...from), ...points] : points) {
     const known = Number.isFinite(px) && Number.isFinite(py);
     if (known && down) context.lineTo(px, py);
     else if (known) context.moveTo(px, py);
@@ -78,6 +79,25 @@ function drawErrors(context, { x, y, error, role }, spot, unit, across, bars) {
   }
 }
 
+// Shade the areas between a curve and zero: to the right as CAPE, to the left as CIN.
+export function drawAreas(context, { x, y }, spot, { left, top, width, height }) {
+  const points = y.map((value, place) => spot(x[place], value)).filter((point) => point.every(Number.isFinite));
+  if (points.length < 2) return;
+  const [zero] = spot(0, y[0]);
+  [[zero, left + width - zero], [left, zero - left]].forEach(([from, wide], index) => {
+    context.save();
+    context.beginPath();
+    context.rect(from, top, Math.max(wide, 0), height);
+    context.clip();
+    context.beginPath();
+    for (const [px, py] of [[zero, points[0][1]], ...points, [zero, points.at(-1)[1]]]) context.lineTo(px, py);
+    context.fillStyle = curveColour("reference", index);
+    context.globalAlpha = 0.35;
+    context.fill();
+    context.restore();
+  });
+}
+
 // Draw a histogram as steps between the bounds of its bins.
 function drawSteps(context, { x, y, error }, spot, unit, floor) {
   if (x.length < 2) return;
@@ -100,7 +120,7 @@ function drawSteps(context, { x, y, error }, spot, unit, floor) {
 }
 
 // Draw a point whose error is not known, as in a layer that was seldom visited.
-function hollow(context, unit) {
+export function hollow(context, unit) {
   context.save();
   context.fillStyle = look().card;
   context.fill();
@@ -109,7 +129,7 @@ function hollow(context, unit) {
   context.restore();
 }
 
-function mark(context, [x, y], index, unit) {
+export function mark(context, [x, y], index, unit) {
   const size = 3 * unit;
   context.beginPath();
   if (index % 4 === 0) context.arc(x, y, size, 0, 7);

@@ -54,7 +54,7 @@ class Lab {
   hear(told) {
     if (told.type === "stage") this.open(told);
     else if (told.type === "series") this.append(told);
-    else if (told.type === "arrays") this.numbers?.replace(told.values);
+    else if (told.type === "arrays") this.numbers?.replace(told.values, told.settling);
     else if (told.type === "wind") this.stage?.blow(told);
     else if (told.type === "state") this.state(told);
     else if (told.type === "link") this.link.show(told.link);
@@ -87,7 +87,7 @@ class Lab {
     this.sheet = new Sheet([this.stage], () => this.graphs.repaint());
     this.walls = state.walls ?? null;
     find("story").textContent = story(record.story);
-    find("panel").hidden = false;
+    find("panel").hidden = !controls?.length && !lesson?.presets.length;
     this.lesson.offer(record.scene, lesson);
     const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
       record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");

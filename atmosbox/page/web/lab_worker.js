@@ -95,8 +95,8 @@ class Box {
   gauges() {
     const rows = this.trace.rows.slice(-FRAMES), last = rows.at(-1) ?? {};
     return this.plan.gauges.flatMap(({ name, variable, unit, factor, offset, few }) => {
-      const seen = rows.filter((row) => !few || row[few[0]] >= few[1] * row[variable]).map((row) => row[variable]).filter(Number.isFinite);
-      if (!seen.length) return [];
+      const seen = rows.map((row) => row[variable]).filter(Number.isFinite);
+      if (!seen.length || (few && !(last[few[0]] >= few[1] * last[variable]))) return [];
       const mean = seen.reduce((sum, value) => sum + value, 0) / seen.length;
       const steady = !this.plan.ends && this.frame - this.since >= FRAMES + this.plan.settle && seen.length === FRAMES;
       const measured = steady ? Math.sqrt(seen.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (FRAMES - 1)) : NaN;
@@ -149,7 +149,9 @@ class Box {
     if (this.sample <= plan.samples) return true;
     machine.call("end_frame");
     Object.assign(this, { frame: this.frame + 1, sample: 1, fresh: true, inside: false });
-    if (this.frame - this.since > plan.settle) machine.call("note_frame");
+    const passed = this.frame - this.since; // while the box settles, averages are over the last half of the time
+    if (passed <= plan.settle ? Number.isInteger(Math.log2(passed)) : passed === plan.settle + 1) machine.call("begin_averages_anew");
+    machine.call("note_frame");
     const reading = machine.array("gauges.reading"), row = {};
     for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
     for (const table of plan.tables) {
@@ -234,7 +236,8 @@ class Box {
         values: Object.fromEntries(told.map((name) => [name, trace.column(name, trace.sent)])) });
       Object.assign(trace, { sent: trace.rows.length, reset: false });
     }
-    if (Object.keys(values).length) say({ type: "arrays", values });
+    const settling = this.frame - this.since <= plan.settle ? plan.profiles.map(([name]) => name) : [];
+    if (Object.keys(values).length) say({ type: "arrays", values, settling });
     if (plan.wind) say({ type: "wind", ...plan.wind, values: Array.from(machine.array("gauges.flow.wind"), (value) => value * plan.wind.factor) });
   }
 

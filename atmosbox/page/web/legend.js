@@ -7,10 +7,10 @@ import { phrase, word } from "./words.js";
 export function showLegend(parent, stage, mode) {
   parent.replaceChildren();
   if (mode === "speed") {
-    const { low, high, unit, counted } = stage.speed;
+    const { low, high, unit, counted, bend } = stage.speed;
     const bar = document.createElement("div");
     bar.className = "bar";
-    bar.style.background = speedGradient();
+    bar.style.background = speedGradient(bend);
     const ends = document.createElement("div");
     ends.className = "ends";
     for (const value of [low, (low + high) / 2, high]) {

@@ -10,7 +10,6 @@ import { Trace } from "./trace.js";
 import { Wind } from "./wind.js";
 import { phrase, word } from "./words.js";
 
-const TABLE = Array.from({ length: 256 }, (_, share) => speedColour(share / 255));
 const SHARPEST = 2; // greatest number of pixels of the screen per pixel of the page
 const CATCH = 14; // pixels within which a click finds a molecule
 
@@ -19,6 +18,7 @@ export class Stage {
     this.record = record;
     this.film = film;
     this.mode = record.species.length > 1 && record.particle === "molecule" ? "species" : "speed";
+    this.table = Array.from({ length: 256 }, (_, share) => speedColour((share / 255) ** record.speed.bend));
     this.wraps = [0, 1, 2].map((axis) => record.box.walls[2 * axis] === "periodic");
     this.canvas = document.createElement("canvas");
     this.canvas.tabIndex = 0;
@@ -86,7 +86,7 @@ export class Stage {
     if (!this.renderer || !width || !height) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, SHARPEST));
     this.renderer.setSize(width, height, false);
-    this.molecules.material.uniforms.height.value = this.renderer.domElement.height;
+    for (const { material } of [this.molecules, this.walls.mist]) material.uniforms.height.value = this.renderer.domElement.height;
     this.sized = true;
     this.camera.resize(width, height);
     this.dirty = true;
@@ -135,7 +135,7 @@ export class Stage {
     const kinds = this.record.species.map(({ name }) => parse(look().species[name] ?? look().species.molecule));
     const traced = this.#traced(), chosen = this.trace.molecule;
     this.molecules.colour((index, array, at) => {
-      const rgb = index === chosen ? traced : this.mode === "speed" ? TABLE[speed[index]] : kinds[this.record.kind[index]];
+      const rgb = index === chosen ? traced : this.mode === "speed" ? this.table[speed[index]] : kinds[this.record.kind[index]];
       [array[at], array[at + 1], array[at + 2]] = rgb;
     });
     this.dirty = true;

@@ -2,6 +2,7 @@
 
 import * as THREE from "three";
 import { look, parse, wallColour } from "./colour.js";
+import { Mist } from "./mist.js";
 
 const DROPS = 96; // greatest number that is drawn
 const POOL = -1; // a drop of negative radius is a layer on the floor: a pool for this value, else rain
@@ -62,9 +63,11 @@ export class Walls {
     this.drops = new THREE.InstancedMesh(new THREE.SphereGeometry(1, 22, 16), this.liquidMaterial, DROPS);
     this.drops.frustumCulled = false;
     this.drops.count = 0;
+    this.drops.renderOrder = 1; // on top of the mist
+    this.mist = new Mist(DROPS);
     this.layer = this.#mesh(new THREE.BoxGeometry(1, 1, 1), this.layerMaterial);
     this.layer.visible = false;
-    this.object.add(this.drops);
+    this.object.add(this.drops, this.mist.object);
   }
 
   // The colours of the theme.
@@ -74,12 +77,14 @@ export class Walls {
     this.ghostMaterial.color = colour(parse(now.edge));
     this.liquidMaterial.color = colour(parse(now.liquid));
     this.layerMaterial.color = colour(parse(now.liquid));
+    this.mist.material.uniforms.white.value = colour(parse(now.cloud));
     if (this.metal) this.metal.color = colour(parse(now.metal));
     for (const wall of this.walls) {
       const warm = this.box.wall_temperature[wall.userData.index];
       const heated = warm !== null;  // also a smooth wall that was given a temperature by hand
-      wall.material.color = colour(heated ? wallColour(warm) : parse(now.edge));
-      wall.material.opacity = heated ? 0.3 : 0.06;
+      const sky = this.box.misty && this.box.walls[5] === "piston"; // a cloud is white, and seen against the sky
+      wall.material.color = colour(heated ? wallColour(warm) : parse(sky ? now.sky : now.edge));
+      wall.material.opacity = heated ? 0.3 : sky ? 0.75 : 0.06;
     }
   }
 
@@ -126,21 +131,27 @@ export class Walls {
       if (drops[index + 3] < 0) {
         const deep = (Math.round(drops[index + 3]) === POOL ? 0.16 : 0.05) * Math.min(z, x) * Math.max(pz, 0.02);
         this.layer.visible = true;
+        this.layerMaterial.opacity = Math.round(drops[index + 3]) === POOL ? 0.75 : 0.4;
         this.layer.position.set(x / 2, y / 2, -deep / 2);
         this.layer.scale.set(x, y, deep);
       } else if (number < DROPS) {
         matrix.makeScale(radius, radius, radius).setPosition(px, py, pz);
         this.drops.setMatrixAt(number, matrix);
+        this.mist.position.array.set([px, py, pz], 3 * number);
+        this.mist.radius.array[number] = radius;
         number += 1;
       }
     }
     this.drops.count = number;
     this.drops.instanceMatrix.needsUpdate = true;
+    this.mist.show(this.box.misty ? number : 0);
   }
 
   // From above, the piston is transparent.
   seenFrom(eye, height) {
-    if (this.metal) this.metal.opacity = eye.z > height ? 0.2 : 0.92;
+    if (!this.metal) return;
+    const above = eye.z > height;
+    Object.assign(this.metal, { opacity: above ? 0.2 : 0.92, depthWrite: !above });
   }
 }
 
