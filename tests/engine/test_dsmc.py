@@ -102,23 +102,14 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
 
 @pytest.mark.parametrize(
     ("walls", "gravity"),
-    [
-        *((walls, 0.0) for walls in (SMOOTH, TURNING, (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))),
-        *(
-            (walls, 0.3)
-            for walls in ((*TURNING[:4], *SMOOTH[:2]), (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))
-        ),
-        pytest.param(SMOOTH, 0.3, marks=pytest.mark.nightly),
-    ],
+    [(TURNING, 0.0), ((*TURNING[:4], *SMOOTH[:2]), 0.3), ((*SMOOTH[:5], Piston(-0.05)), 0.3)],
 )
 def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):
     number, side = (BLOCK + 500, 8.0) if COMPILED else (40, 8.0)
     small = 1e-7  # so that there are cells, and no collisions
     gas = box(number, side, walls=walls, gravity=gravity, diameter=small, dt=0.2)
     start = gas.snapshot()
-    # under a piston with next to no gravity instead of none: it needs no further kernels
-    weak = gravity or 1e-300 * isinstance(walls[5], Piston)
-    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=weak, diameter=small)
+    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=gravity, diameter=small)
     gas.advance(75.0)  # far enough to be put in the order of cells twice
     exact.advance(gas.time)
     assert gas.steps > 65
@@ -176,13 +167,6 @@ def test_a_gas_at_rest_falls_and_collides():
     assert still.contacts == 0
 
 
-def test_a_cold_floor_in_strong_gravity_does_not_stop_time():
-    gas = box(50, 5.0, walls=(*SMOOTH[:4], HeatBath(1e-12), Specular()), gravity=100.0)
-    gas.advance(1.0)
-    assert gas.escaped() == 0
-    assert gas.energy()[0] < 0.1 * gas.number
-
-
 def test_cells_and_steps_are_as_asked():
     number, side = 5000, 50.0
     path = (side - 1.0) ** 3 / (math.sqrt(2.0) * number * math.pi)
@@ -223,10 +207,3 @@ def test_a_piston_that_comes_down_too_far_says_so():
     gas.set_piston_velocity(1.0)
     gas.advance(20.0)
     assert gas.ceiling > 5.0
-
-
-@many_molecules
-def test_a_molecule_takes_few_bytes():
-    assert box(100_000, 200.0).memory() < 80 * 100_000
-    spinning = box(100_000, 200.0, rotation=2)
-    assert spinning.memory() < 88 * 100_000

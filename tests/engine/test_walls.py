@@ -112,11 +112,3 @@ def test_a_piston_reflects_in_its_own_frame():
         after = emitted(Piston(velocity), wall=5, number=1)[0]
         assert after.tolist() == [-3.0 + 2.0 * velocity, 0.25, 0.5, 7.0]
         assert after[0] - velocity == -(3.0 - velocity)
-
-
-def test_walls_without_chance_draw_no_number():
-    state = random_state()
-    before = state.copy()
-    for law, wall in ((Specular(), 0), (Piston(0.1), 5)):
-        resolve_wall_hit(wall, 0.0, (1.0, 0.0, 0.0), 0.0, (MASS, 0.0), walls_with(law, wall), False, state)
-    assert (state == before).all()
