@@ -8,7 +8,6 @@ from atmosbox.errors import SettingError
 from atmosbox.file.molecules import molecules
 from atmosbox.scene.instruments.condensate import drops_of
 from atmosbox.simulation import runner
-from atmosbox.simulation.preparation import build
 
 HARD = {"attraction": 0.0}
 
@@ -52,12 +51,6 @@ def test_without_a_bath_motion_gains_what_attraction_loses():
     np.testing.assert_allclose(gained[1:], lost[1:], rtol=1e-9)
     assert np.ptp(data.molecular_energy.values) < 1e-12 * float(data.kinetic_energy[0])
     assert "heat_from_bath" not in data
-
-
-def test_the_heat_of_the_bath_is_what_becomes_of_the_energy():
-    data, *_ = run(molecules=300, duration="0.2 ns")
-    change = (data.molecular_energy - data.heat_from_bath).values
-    assert np.ptp(change) < 1e-12 * float(np.abs(data.heat_from_bath).max() + data.kinetic_energy[0])
 
 
 def test_a_heated_drop_evaporates_before_it_becomes_much_warmer():
@@ -125,19 +118,6 @@ def test_molecules_that_are_kept_tell_their_neighbours_and_the_drop_is_in_the_mi
     assert np.abs(inner.mean(axis=0) / seen.side[-1] - 0.5).max() < 0.03
     away = np.linalg.norm(inner - 0.5 * seen.side[-1], axis=1)
     assert away.max() < 0.45 * seen.side[-1].min()
-
-
-def test_the_knobs_of_the_live_page_boil_the_drop_and_the_ledger_has_it():
-    setup = build(runner.prepare("attraction", {"start": "drop", "density": 0.1, "molecules": 200}))
-    parcel, knobs = setup.parcel, {knob.name: knob for knob in setup.knobs}
-    parcel.advance(5.0)
-    held = parcel.number_of_wells
-    knobs["attraction"].set(0.2)
-    knobs["temperature"].set(150.0)
-    parcel.advance(60.0)
-    assert parcel.number_of_wells < 0.3 * held
-    assert parcel.attraction_work > 0.0
-    assert parcel.ledger() < 1e-12
 
 
 def test_two_touching_clusters_are_one_drop_and_a_pair_is_vapour():

@@ -152,25 +152,3 @@ def test_heavy_molecules_sink_each_by_its_own_scale_height(gas):
     exact = theory.column_mean_height(height, kT, np.array([1.0, 4.0]), gravity)
     assert (error / exact < 0.01).all()
     assert (np.abs(mean - exact) <= 4.0 * error).all()
-
-
-def test_a_column_that_is_warmed_rises_by_its_heat_capacity(gas):
-    number, gravity, height = 2000, 0.5, 8.0
-    energies = []
-    for kT in (0.9, 1.1):
-        walls = (S, S, S, S, HeatBath(kT), HeatBath(kT))
-        box = gas(number, (5.0, 5.0, height), walls=walls, diameter=0.0, kT=kT, gravity=gravity, seed=45)
-        box.advance(200.0)
-        values = []
-        for _ in range(1000):
-            box.advance(box.time + 8.0)
-            values.append(sum(box.energy()) / number)
-        energies.append(block_average(values))
-    (cold, cold_error), (warm, warm_error) = energies
-    capacity, error = (warm - cold) / 0.2, np.hypot(cold_error, warm_error) / 0.2
-    exact = float(column_at_rest.column_heat_capacity(height, 1.0, 1.0, gravity))
-    assert error < 0.1
-    # the difference over a fifth is the slope but for 1 part in 100
-    assert abs(capacity - exact) <= 4.0 * error + 0.01 * exact
-    # more than the 3/2 of a gas without gravity
-    assert exact > 2.0

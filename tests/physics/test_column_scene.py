@@ -56,17 +56,6 @@ def test_a_plane_column_stands_presses_and_warms_as_hydrostatics_of_discs_say(fl
         assert error < 0.005 * pressure
 
 
-def test_the_facts_of_a_plane_column_are_those_of_discs():
-    plane, space = facts(plane=True), facts()
-    assert plane["gamma"].startswith("2:")
-    assert space["gamma"].startswith("5/3:")
-    assert plane["exaggeration"].startswith("discs 0.9 m wide")
-    assert "slab 8.43 km thick" in plane["box"]
-    # the same number of molecules represents the same amount of air
-    assert plane["real molecules per simulated one"] == space["real molecules per simulated one"]
-    assert plane["scale height"] == space["scale height"]
-
-
 def test_the_barometric_law_is_that_of_the_textbook():
     found = run(molecules=60, duration=5.0, start="equilibrium").dataset
     scale_height = BOLTZMANN * 288.15 / (DRY_AIR.molecule_mass * 9.80665)
@@ -155,10 +144,3 @@ def test_a_column_that_starts_uniform_falls_warms_and_comes_to_the_profile_of_eq
     error = mean.std(axis=0, ddof=1) / math.sqrt(len(outcomes))
     assert (np.abs(mean.mean(axis=0)) <= 4.0 * error).all()
     assert (error < [0.9, 40.0]).all()
-
-
-def test_a_run_too_short_to_settle_has_no_headlines():
-    assert run(molecules=60, duration=5.0).headlines == ()
-    # so few molecules tell all but the scale height, which they know worse than to a tenth
-    known = {each.name for each in run(molecules=60, duration=5.0, start="equilibrium").headlines}
-    assert known == {"mean_surface_pressure", "weight_of_the_air", "mean_temperature", "mean_height"}

@@ -186,32 +186,6 @@ def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
     agrees(rows, np.array([vapour, 1.0]), 0.015 * np.array([vapour, 1.0]))
 
 
-@pytest.mark.nightly
-def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
-    # forty molecules of air, each of which has 0.8 % less room for every molecule that joins the drop
-    molecules, air, rng = 30, 40, np.random.default_rng(5)
-    facts = {"nucleus": 0.2, "nucleus_mass": PINNED, "molecule_radius": 0.12}
-    drops = Drops(water(20.0), number=molecules, nuclei=50.0, position=MIDDLE, **facts)
-    shelf = np.linspace(0.1, 0.9, 5)
-    parcel = DropParcelSet(
-        np.array([(x, y, z) for z in (0.02, 0.98) for x in shelf for y in shelf[:4]]),
-        rng.standard_normal((air, 3)),
-        length=(1.0, 1.0, 1.0),
-        mass=AIR_MASS,
-        diameter=SMALL,
-        rotation=2.0,
-        rotational_energy=rng.standard_gamma(1.0, air),
-        liquid=drops,
-        seed=5,
-        walls=BATHS,
-    )
-    chance = canonical(molecules, drops, drops.substance.saturation_pressure(1.0), air)
-    free = canonical(molecules, drops, drops.substance.saturation_pressure(1.0), 0)
-    n = np.arange(molecules + 1)
-    assert n @ free - n @ chance > 3.0
-    agrees(sampled(parcel, 2.0, 4000, lambda box: [box.liquid]), np.array([n @ chance]), 0.12)
-
-
 @pytest.mark.parametrize(
     ("mass", "ball"),
     [(0.5, 0.15), *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((0.5, 0.0), (10.0, 0.15)))],

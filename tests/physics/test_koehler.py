@@ -270,15 +270,6 @@ def test_the_oracle_and_the_theory_are_one_law():
     assert math.log(thin.humidity) == pytest.approx(2.0 * reach / (3.0 * thin.radius), rel=1e-3)
 
 
-def test_surface_and_salt_are_in_what_a_box_tells():
-    parcel = box(drops(41, PAIR, salt=(0.0, 7.0)), 5)
-    radius = parcel.drops()[1]
-    assert parcel.surface_energy == pytest.approx(4.0 * math.pi * TENSION * float(radius @ radius), rel=1e-12)
-    assert parcel.dissolved.tolist() == [0.0, 7.0]
-    flat = box(drops(41, PAIR, tension=0.0), 5)
-    assert parcel.condensed_energy - flat.condensed_energy == pytest.approx(parcel.surface_energy, rel=1e-12)
-
-
 def test_what_no_drop_can_have_is_refused():
     for changes, says in [
         ({"tension": -1.0}, "surface tension"),

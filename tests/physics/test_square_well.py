@@ -57,11 +57,6 @@ def test_virial_coefficients_are_the_integrals_of_mayer(range_):
     assert float(theory.square_well_third_virial(kT, range_)) == pytest.approx(product.mean(), abs=4.0 * error)
 
 
-def test_in_a_very_thin_gas_a_molecule_has_as_many_partners_as_boltzmann_says():
-    volume = 4.0 * np.pi / 3.0 * (1.5**3 - 1.0)
-    assert square_well_energy(1e-9, 1.0) == pytest.approx(-0.5 * 1e-9 * volume * np.e, rel=1e-6)
-
-
 @pytest.mark.parametrize(
     ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.nightly) for kT in (1.0, 1.5, 2.0, 3.0))]
 )

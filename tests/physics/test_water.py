@@ -146,21 +146,6 @@ def test_between_heat_baths_the_vapour_has_the_saturation_pressure(wet, parcel, 
     assert box.ledger() < 1e-11
 
 
-def test_a_liquid_between_heat_baths_has_their_temperature(wet):
-    substance, kT, nuclei = wet.water(20.0 * math.exp(PHI)), 1.0, 50.0
-    box = wet.box(Mist(substance, number=60, kT=0.7, nuclei=nuclei, area=8.0), 2, seed=7, walls=(HeatBath(kT),) * 6)
-    box.advance(100.0)
-    values = []
-    for k in range(8000):
-        box.advance(101.0 + k)
-        capacity = nuclei + C_L * box.liquid
-        values.append([box.liquid_kT, (box.liquid_energy - capacity * kT) ** 2 / capacity])
-    mean, error = block_average(values, BLOCKS)
-    # its energy is a gamma variate of as many degrees as it has: of that variance
-    assert (error < 0.1).all()
-    assert (np.abs(mean - kT) <= 4.0 * error).all()
-
-
 # ------------------------------------------------------------------ with excluded volume
 
 
@@ -241,41 +226,7 @@ def test_in_dense_air_the_partial_pressure_is_that_of_saturation(kind, walls, op
     assert abs(ratio / (thinned_by_edges(filled) if kind is Pool else 1.0) - 1.0) <= 4.0 * accuracy
 
 
-@pytest.mark.nightly
-def test_over_a_pool_in_dense_air_edges_of_the_floor_make_the_vapour_thinner():
-    kind, walls, options = POOL
-    open_sides = ((Periodic(),) * 4 + walls[4:], lambda filled: 1.0)
-    for sides, expected in ((walls, thinned_by_edges), open_sides):
-        runs = np.array([dense_vapour(kind, sides, options, 100 + seed)[:2] for seed in range(16)])
-        apart = runs[:, 1] / [expected(filled) for filled in runs[:, 0]] - 1.0
-        error = apart.std(ddof=1) / 4.0
-        assert error < 0.01
-        assert abs(apart.mean()) <= 4.0 * error  # between walls it is 5.6 % thinner, eight errors
-
-
 # ------------------------------------------------------------------ on dsmc, where they collide
-
-
-@pytest.mark.parametrize(
-    ("kind", "samples"),
-    [(Mist, 10_000), *(pytest.param(kind, 25_000, marks=pytest.mark.nightly) for kind in (Mist, Pool))],
-)
-def test_unlike_molecules_that_collide_visit_all_states_alike(wet, kind, samples):
-    # in half the unit of time each of them collides
-    diameter, options = 0.4, {"nuclei": 10.0} | ({"area": 8.0} if kind is Mist else {})
-    substance = Substance(MASS, diameter, PHI, C_L, 2.0 / 0.6**3 * math.exp(PHI))
-    rng = np.random.default_rng(4)
-    box = MoistDsmcParcel(
-        diameter / 2.0 + (1.0 - diameter) * rng.random((2, 3)),
-        rng.standard_normal((2, 3)),
-        length=(1.0, 1.0, 1.0),
-        diameter=diameter,
-        rotation=2.0,
-        liquid=kind(substance, number=3, kT=1.4, **options),
-        seed=4,
-    )
-    wet.holds_the_balance(box, 3, 2, 10.0, substance, step=2.0, samples=samples, diameter=diameter)
-    assert box.contacts > 0.8 * samples
 
 
 OPEN, DIAMETER = 24.0, 0.35  # a mean free path is a quarter of the box: no block is shorter than vapour takes to spread
