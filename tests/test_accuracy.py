@@ -19,7 +19,7 @@ from atmosbox.file import provenance
 from atmosbox.scene import engines
 from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF, Headline
 from atmosbox.simulation import accuracy, runner
-from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, expect, parse
+from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
 from atmosbox.trade import timed_run
 
@@ -120,21 +120,6 @@ def test_another_experiment_is_not_picked_for_its_accuracy_but_when_it_is_asked_
     assert other.way.settings == {"start": "equal"}
     with pytest.raises(SettingError, match="with these settings, at which nothing was measured"):
         choose("temperature", "sketch", {"start": "unequal"}, TABLES)
-
-
-def test_a_scene_that_was_not_measured_and_a_bare_number_are_refused():
-    with pytest.raises(SettingError, match="is not a text"):
-        choose("temperature", 0.5, tables=TABLES)
-    with pytest.raises(SettingError, match="not for lifting-dry, whose errors were not measured: leave it out, or"):
-        choose("lifting-dry", "sketch", tables=TABLES)
-
-
-def test_an_engine_given_by_hand_is_looked_up_at_its_own_settings_alone():
-    found = expect("temperature", "stepped:applet,delta=0.01", {"duration": 1.0, "seed": 7}, TABLES)
-    assert found.way is TABLES["temperature"].ways[3]
-    assert expect("temperature", "stepped:applet,delta=0.01", {}, TABLES) is None
-    assert expect("temperature", "stepped:applet,delta=0.02", {"duration": 1.0}, TABLES) is None
-    assert expect("lifting-dry", "stepped:applet,delta=0.01", {}, TABLES) is None
 
 
 # What is run and what the report says

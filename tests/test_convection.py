@@ -147,11 +147,6 @@ def test_rolls_of_sixty_seeds_grow_as_linear_theory_says_within_their_errors():
     assert -0.09 - 4.0 * stats.sem(ratio) < ratio.mean() - 1.0 < 4.0 * stats.sem(ratio)  # grown rolls are slower
 
 
-def test_an_accuracy_is_refused_with_its_reason():
-    with pytest.raises(AtmosboxError, match="theory knows only the weight of the air"):
-        runner.prepare("convection", {}, accuracy="sketch")
-
-
 def test_below_an_inversion_little_of_the_smoke_rises():
     inversion, open_air = ran(case="inversion", molecules=2000), ran(**TURNS)
     smoke, mixed = (number(outcome, "share_from_the_floor") for outcome in (inversion, open_air))

@@ -35,31 +35,10 @@ def headline(name="lapse_rate", value=9.7e-3, **fields):
     return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
 
 
-def test_a_variable_that_is_not_declared_is_refused():
-    with pytest.raises(KeyError, match="air_temprature"):
-        dataset({"air_temprature": [1.0, 2.0, 3.0]}, TIMES, {})
-
-
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_a_ledger_that_is_not_finite_stops_the_run(value):
     with pytest.raises(EngineError, match=r"kinetic_energy is not finite at \[1\]"):
         dataset({"kinetic_energy": [1.0, value, 2.0]}, TIMES, {})
-
-
-def test_a_measurement_of_nothing_is_nan_and_has_a_fill_value():
-    run = dataset({"air_temperature": [300.0, np.nan, 301.0]}, TIMES, {})
-    assert np.isnan(run.air_temperature.values[1])
-    assert np.isnan(run.air_temperature.encoding["_FillValue"])
-
-
-def test_coordinates_bounds_and_ledgers_have_no_fill_value():
-    coords = TIMES | {"elapsed_time_bnds": [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]}
-    run = dataset({"kinetic_energy": [1.0, 2.0, 3.0], "collision_count": [0, 1, 2]}, coords, {})
-    for name in ("elapsed_time", "elapsed_time_bnds", "kinetic_energy", "collision_count"):
-        assert run[name].encoding["_FillValue"] is None
-    assert run.elapsed_time.attrs["bounds"] == "elapsed_time_bnds"
-    assert run.elapsed_time_bnds.attrs == {}
-    assert "elapsed_time_bnds" not in run.coords
 
 
 def test_what_is_measured_on_the_way_can_be_drawn_along_the_pressure_and_the_height_of_the_parcel(tmp_path):

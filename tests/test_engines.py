@@ -5,7 +5,6 @@ import warnings
 
 import pytest
 
-from atmosbox import scenarios
 from atmosbox.engine import CoarseStepWarning
 from atmosbox.engine.core.energy_budget import GIVEN, STORES
 from atmosbox.errors import SettingError, UnknownSettingError
@@ -56,13 +55,6 @@ def test_a_file_knows_its_engine_also_one_of_an_earlier_version():
         assert (used(old).name, used(old).ideal) == ("stepped", ideal)
     with pytest.raises(SettingError, match="engine = exakt"):
         used(made.assign_attrs(atmosbox_parameters=json.dumps({"engine": "exakt"})))
-
-
-def test_without_collisions_nobody_meets_and_theory_counts_no_room():
-    made = runner.run("temperature", molecules=50, duration="1 ns", engine="exact:collisions=off")
-    assert not made.collision_count.values.any()
-    assert made.wall_hit_count.values[-1] > 0
-    assert used(made).ideal is True
 
 
 @pytest.mark.parametrize("scene", ["atmosphere", "evaporation", "lifting-moist", "lifting-sounding", "mountains"])
@@ -146,10 +138,6 @@ def test_energy_minus_heat_and_work_is_constant_in_every_scene_with_every_switch
     assert {name for name in (*STORES, *GIVEN) if name in made and made[name].values.any()} == terms
     for check in runner.verify(made):
         assert check.passed, check.sentence
-
-
-def test_every_scene_is_among_those_whose_energy_is_checked():
-    assert {row[0] for row in PARTS} == set(scenarios.names())
 
 
 def test_a_term_that_is_left_out_of_the_budget_is_found():

@@ -1,10 +1,8 @@
 """Files: complete or absent, according to CF, and read again as they were written."""
 
-import ast
 import errno
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -18,7 +16,7 @@ import xarray as xr
 from atmosbox import film, page, plot, sheet
 from atmosbox.errors import DiskFullError, FileError
 from atmosbox.file import netcdf as output
-from atmosbox.file import output_path, provenance, validity
+from atmosbox.file import provenance, validity
 from atmosbox.file.dataset import VARIABLES, dataset
 from atmosbox.file.output_path import check_writable, clear, whole_file
 from atmosbox.scene.headline import Headline
@@ -257,23 +255,6 @@ def test_whatever_a_file_is_made_of_it_is_there_whole_or_not_at_all(tmp_path):
         assert path.read_bytes() == b"old"
     assert path.read_bytes() == b"new"
     assert [each.name for each in tmp_path.iterdir()] == ["film.mp4"]
-
-
-WRITES = re.compile(r"^os\.replace$|\.(write_bytes|write_text|to_netcdf)$")
-
-
-def test_nothing_in_the_package_puts_a_file_in_its_place_on_its_own():
-    """A second way to write a file whole would be one that forgets something; what only caches keep may be lost."""
-    package = Path(output_path.__file__).parents[1]
-    ways = {
-        path.relative_to(package).as_posix()
-        for path in package.rglob("*.py")
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Call) and WRITES.search(ast.unparse(node.func))
-    }
-    caches = {"engine/core/kernel_cache.py", "simulation/compilation.py", "simulation/expected_time.py"}
-    netcdf = "file/netcdf.py"  # it takes the room on the disk for the temporary file of output_path
-    assert ways - caches == {"file/output_path.py", "file/checkpoint.py", netcdf}
 
 
 # Files that may be read

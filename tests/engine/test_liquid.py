@@ -23,7 +23,6 @@ from atmosbox.engine.liquid.reservoir import (
     heat_capacity,
     new_reservoir,
     rain_out,
-    wait,
 )
 from tests.engine.boxes import held, random_state
 
@@ -90,23 +89,6 @@ def test_a_drop_of_any_size_in_a_heat_bath_emits_what_hertz_and_knudsen_say(numb
     assert mean == pytest.approx(hertz_knudsen(kT), rel=1e-6)
 
 
-@pytest.mark.parametrize("kT", [0.5, 1.0])
-def test_at_rest_the_rate_nears_that_of_hertz_and_knudsen_as_one_over_the_size(kT):
-    # ln(R / R_HK) at U = C T is -((y + a - 1)^2 + a - 1) / 2C + O(1 / C^2), with a = g - c_l and y = phi / T
-    a, y = SHAPE - C_L, PHI / kT
-    leading = -0.5 * ((y + a - 1.0) ** 2 + a - 1.0)
-    previous = math.inf
-    for number in (100, 200, 400, 800, 1600):
-        capacity = C_L * number
-        ratio = rate_at(ledger_of(number), capacity * kT) / hertz_knudsen(kT)
-        off = abs(capacity * math.log(ratio) - leading)
-        assert off < 0.6 * previous
-        previous = off
-    assert off < 0.01 * max(abs(leading), 1.0)
-    # for a million molecules the correction is negligible; logarithms of 1e8 leave eight digits
-    assert rate_at(ledger_of(1_000_000), 1e6 * C_L * kT) == pytest.approx(hertz_knudsen(kT), rel=1e-6)
-
-
 def test_the_substance_knows_the_vapour_pressure_that_the_rate_implies():
     for kT in (0.3, 1.0, 2.0):
         assert WATER.saturation_pressure(kT) == pytest.approx(K * kT ** (4.0 - C_L) * math.exp(-PHI / kT), rel=1e-12)
@@ -116,28 +98,6 @@ def test_the_substance_knows_the_vapour_pressure_that_the_rate_implies():
     kT, step = 0.9, 1e-5
     above, below = (WATER.saturation_pressure(kT * math.exp(s)) for s in (step, -step))
     assert math.log(above / below) / (2.0 * step) == pytest.approx((PHI + (4.0 - C_L) * kT) / kT, rel=1e-8)
-
-
-def test_no_size_and_no_energy_makes_the_rate_overflow():
-    for number in (1, 2, 1000, 1_000_000):
-        for nuclei in (0.0, 1e-9, 1e5):
-            ledger = ledger_of(number, nuclei=nuclei)
-            for energy in (1e-300, 1e-3, PHI * (1.0 + 1e-15), 1e3, 1e8, 1e100, 1e300):
-                rate = rate_at(ledger, energy)
-                assert math.isfinite(rate)
-                assert rate >= 0.0
-    # phi / T of 32, as of water at -60 degrees Celsius
-    cold = Substance(**FACTS | {"binding_energy": 32.0, "volatility": 1e10})
-    assert evaporation_rate(ledger_of(100_000, substance=cold)) == pytest.approx(
-        hertz_knudsen(1.0, cold), rel=1e3 / 100_000
-    )
-
-
-def test_waiting_times_are_exponential_and_without_a_rate_there_is_no_end():
-    state = random_state()
-    sample = np.array([wait(2.5, state) for _ in range(NUMBER)])
-    assert stats.kstest(sample, "expon", args=(0.0, 0.4)).pvalue > 1e-4
-    assert wait(0.0, state) == math.inf
 
 
 # ------------------------------------------------------------------ with which energies

@@ -21,7 +21,6 @@ from atmosbox.engine import (
     random_positions,
 )
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
 from atmosbox.engine.liquid import moist_parcelset
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
@@ -193,38 +192,6 @@ def test_only_what_the_liquid_does_not_keep_falls_as_rain(engine, by_single_even
     is_lawful(parcel, 40)
 
 
-@on_each_engine
-def test_the_spectrum_counts_each_molecule_that_left_with_seven_half_kT(engine):
-    parcel = box(engine, "mist")
-    parcel.advance(100.0)
-    edges, counts = parcel.emitted_energy
-    assert counts.sum() == parcel.evaporated > 100
-    assert len(edges) == len(counts) + 1
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    assert 3.0 < np.sum(middle * counts) / counts.sum() < 4.0
-
-
-def test_unlike_molecules_of_dsmc_come_to_one_temperature():
-    still = Mist(water(1e-300), number=0, area=1e-9)
-    parcel = moist(still, 3000, 3000, engine="dsmc", sides=(30.0, 30.0, 30.0), walls=TURNING, kT=1.0)
-    is_vapour = parcel.mass < 0.9
-    # the air starts with twice the velocity along x, out of equilibrium
-    parcel._columns.vx[:6000][~is_vapour] *= 2.0
-    parcel.advance(100.0)
-    rows = []
-    for k in range(400):
-        parcel.advance(100.0 + 2.0 * k)
-        now = parcel.snapshot()
-        flight = parcel.mass * np.sum(now.velocity**2, axis=1) / 3.0
-        turns = now.rotational_energy / np.where(is_vapour, 1.5, 1.0)
-        rows.append([values[kind].mean() for values in (flight, turns) for kind in (is_vapour, ~is_vapour)])
-    mean, error = block_average(rows)
-    exact = sum(parcel.energy()) / (3000 * 3.0 + 3000 * 2.5)
-    # four numbers: a false alarm in 400 for a fresh seed
-    assert (error < 0.005).all()
-    assert (np.abs(mean - exact) <= 4.0 * error).all()
-
-
 # ------------------------------------------------------------------ hardly any molecules
 
 
@@ -261,27 +228,6 @@ def test_a_box_may_hold_hardly_any_water_and_air(
 # ------------------------------------------------------------------ extremes
 
 
-def test_without_water_and_liquid_dsmc_does_as_in_dry_air_to_the_last_byte():
-    # of one kind, with a mist so thin that no molecule ever hits it
-    rng = np.random.default_rng(5)
-    facts = {
-        "position": 0.5 + 19.0 * rng.random((2000, 3)),
-        "velocity": rng.normal(size=(2000, 3)),
-        "rotation": 2.0,
-        "rotational_energy": rng.exponential(size=2000),
-        "length": (20.0,) * 3,
-        "walls": (*WARM[:5], Piston(0.05)),
-        "seed": 3,
-    }
-    dry, damp = DsmcParcel(**facts), MoistDsmcParcel(**facts, liquid=Mist(water(), area=1e-12))
-    for parcel in (dry, damp):
-        parcel.advance(60.0)
-    assert damp.contacts == dry.contacts > 1000
-    for ours, theirs in zip(damp.snapshot()[1:], dry.snapshot()[1:], strict=True):
-        assert np.array_equal(ours, theirs)
-    assert np.array_equal(damp.wall_impulse, dry.wall_impulse)
-
-
 @on_each_engine
 def test_vapour_that_condenses_for_good_warms_the_rest_by_its_binding_energy(engine):
     parcel = moist(Mist(water(1e-30), nuclei=50.0, area=60.0), 20, 10, engine=engine)
@@ -313,20 +259,6 @@ def test_a_liquid_that_boils_dries_out(engine, kind, nuclei):
     assert parcel.liquid_energy == pytest.approx(nuclei * parcel.liquid_kT if nuclei else 0.0, abs=1e-11)
     parcel.advance(parcel.time + 20.0)
     is_lawful(parcel, 20)
-
-
-@pytest.mark.parametrize(
-    ("substance", "kT", "number", "vapour"),
-    [(water(1e-4, binding_energy=32.0), 1.0, 30, 3), (water(), 0.0, 3, 5)],
-    ids=["as cold as in a polar night", "cold at the start"],
-)
-def test_a_cold_liquid_catches_vapour_and_keeps_the_balances(substance, kT, number, vapour):
-    nuclei = 50.0 if kT else 0.0
-    parcel = moist(Mist(substance, number=number, kT=kT, nuclei=nuclei, area=60.0), 20, vapour)
-    parcel.advance(300.0)
-    assert parcel.condensed >= 3
-    assert parcel.evaporated > 0
-    is_lawful(parcel, number + vapour)
 
 
 def crowd(liquid):

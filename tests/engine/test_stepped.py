@@ -122,66 +122,6 @@ def test_pairs_are_missed_and_late_as_the_laws_say(dimensions, slope, curvature)
         assert abs(mean[1] - slope / math.sqrt(math.pi) * delta) <= 4.0 * error[1] + 5.0 * delta**3
 
 
-EXCESS = {(3, 0.01): 0.041019, (3, 0.1): 0.521647, (2, 0.01): (1.0 + 0.01**2 / 8.0) / 0.99**2 - 1.0}
-
-
-def crowding(dimensions, phi, delta):
-    """Return the factor by which rate and Z - 1 are too low because overlaps reduce the excluded volume."""
-    if dimensions == 3:
-        slope = 3.0 * phi * (3.0 / (1.0 - phi) - 0.5 / (1.0 - 0.5 * phi))
-    else:
-        slope = 2.0 * phi * (2.0 / (1.0 - phi) - 7.0 / 16.0 / (1.0 - 7.0 / 16.0 * phi))
-    return 1.0 - slope * 0.5 * math.sqrt(math.pi) * delta
-
-
-def rate_and_excess(dimensions, phi, delta, number, contacts, seed, **options):
-    """Return rate and Z - 1 as shares of the exact ones, and their standard errors; energy is kept."""
-    excess = EXCESS[dimensions, phi]
-    if dimensions == 3:
-        sides, walls = ((number * math.pi / 6.0 / phi) ** (1 / 3),) * 3, (P,) * 6
-        rate = 6.0 * excess / math.sqrt(math.pi)
-    else:
-        side = math.sqrt(number * math.pi / 4.0 / phi)
-        sides, walls = (side, 1.0, side), (P, P, S, S, P, P)
-        rate = 4.0 * excess / math.sqrt(math.pi)
-    box = gas(number, sides, walls=walls, seed=seed, dt=delta, planar=dimensions == 2, **options)
-    kinetic = box.energy()[0]
-    box.advance(3.0 / rate)
-    pace = 2.0 * contacts / (20.0 * number * rate)
-    rows = []
-    for _ in range(20):
-        virial, before, time = box.virial.sum(), box.contacts, box.time
-        box.advance(time + pace)
-        elapsed = box.time - time
-        rows.append([
-            2.0 * (box.contacts - before) / (number * elapsed * rate),
-            float(box.virial.sum() - virial) / (2.0 * kinetic * elapsed * excess),
-        ])  # fmt: skip
-    assert box.energy()[0] == pytest.approx(kinetic, rel=1e-11)
-    return block_average(rows)
-
-
-@many_steps
-@pytest.mark.parametrize(("dimensions", "phi", "seed"), [(3, 0.01, 21), (2, 0.01, 21), (3, 0.1, 25)])
-def test_a_gas_meets_and_presses_as_its_pairs_do_and_less_where_it_is_dense(dimensions, phi, seed):
-    number, contacts, delta = 2000, 1e5, 0.1
-    measured, error = rate_and_excess(dimensions, phi, delta, number, contacts, seed)
-    expected = np.array(dilute(delta, dimensions)) * crowding(dimensions, phi, delta)
-    assert (error < 2.5 / math.sqrt(contacts)).all()
-    # beyond the laws: few molecules, 1.5 / N, and the square of the crowding
-    assert (np.abs(measured - expected) <= 4.0 * error + 1.5 / number + 60.0 * phi**2 * delta**2).all()
-
-
-@many_steps
-def test_without_the_test_of_approach_pairs_collide_in_every_step_and_keep_their_energy():
-    # alone, a pair leaves by the mirror image of the way it came, in the one step that it was in overlap
-    assert abs(scattered(0.0125, 3, 20_000, 24, rule="every-overlap", steps=8)[0]) < 0.01
-    # in a gas a third molecule comes between, and the two then swap in every step, for ever deeper and outward again;
-    # energy is asserted with the rate
-    (rate, _), error = rate_and_excess(3, 0.01, 0.01, 2000, 2e4, 23, rule="every-overlap")
-    assert rate - 4.0 * error[0] > 1.2
-
-
 @many_steps
 @pytest.mark.parametrize("delta", [0.4, 1.6])
 def test_rotation_and_translation_come_to_one_temperature_however_long_the_step(delta):
@@ -317,27 +257,6 @@ def test_the_fall_and_the_floor_heat_as_their_laws_say(motion, rule, made):
     # the laws are exact in the fall, and first terms at the floor: molecules get faster
     assert abs(mean - made * gravity**2 * dt) <= 4.0 * error + 1e-12
     assert error <= 0.05 * mean + 1e-12
-
-
-@many_steps
-@pytest.mark.parametrize("dt", [0.03, 0.12])
-def test_walls_give_their_temperature_however_long_the_step_because_those_emitted_fly_on(dt):
-    number, rng = 1000, np.random.default_rng(41)
-    x = rng.uniform(0.0, [2.0, 2.0, 3.0], (number, 3))
-    v = maxwell_velocities(1.0, np.ones(number), rng)
-    spin = rotational_energies(1.0, np.full(number, 2.0), rng)
-    box = parcel(
-        x, v, length=(2, 2, 3), walls=(P, P, P, P, HeatBath(1.0), HeatBath(1.0)), gravity=0.5, diameter=0.0,
-        rotation=2.0, rotational_energy=spin, dt=dt, seed=41,
-    )  # fmt: skip
-    rows = []
-    for _ in range(400):
-        box.advance(box.time + 2.4)
-        now = box.snapshot()
-        rows.append([*np.mean(now.velocity**2, axis=0), now.rotational_energy.mean(), now.position[:, 2].mean() / 3.0])
-    mean, error = block_average(rows)
-    assert (np.abs(mean - [1.0, 1.0, 1.0, 1.0, 1.0 / 1.5 - 1.0 / math.expm1(1.5)]) <= 4.0 * error).all()
-    assert (error < 0.005).all()
 
 
 @many_steps

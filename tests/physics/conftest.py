@@ -48,21 +48,6 @@ def new_gas(number, length, *, walls=SPECULAR, seed, kT=1.0, spin_kT=None, plana
     )
 
 
-def furthest_out_of_place(box):
-    """Return the largest reach of a molecule through a wall, and the deepest overlap of a pair, in mean diameters."""
-    x, sides, diameter = box.snapshot().position, box.length, box.diameter
-    radius = 0.5 * diameter[:, None]
-    walled = ~np.array(box.periodic)
-    outside = np.maximum(radius - x, x - (sides - radius))[:, walled].max(initial=-np.inf)
-    i, j = np.triu_indices(box.number, 1)
-    apart = x[i] - x[j]
-    apart -= np.where(walled, 0.0, sides * np.rint(apart / sides))
-    touching = 0.5 * (diameter[i] + diameter[j])
-    overlap = (touching - np.sqrt(np.sum(apart**2, axis=1))).max(initial=-np.inf)
-    unit = diameter.mean() if diameter.max() > 0.0 else 1.0
-    return outside / unit, overlap / unit
-
-
 # ------------------------------------------------------------------ water
 
 SMALL, MASS, AIR_MASS, PHI, C_L = 1e-3, 0.62, 1.0, 3.0, 5.0
@@ -200,11 +185,6 @@ def nothing_hangs(request):
 @pytest.fixture(scope="session")
 def gas():
     return new_gas
-
-
-@pytest.fixture(scope="session")
-def out_of_place():
-    return furthest_out_of_place
 
 
 @pytest.fixture(scope="session")

@@ -10,10 +10,7 @@ import pytest
 from atmosbox import theory
 from atmosbox.engine import HeatBath, Periodic, Specular
 from atmosbox.engine.core.measure import layer_sample
-from atmosbox.scene.instruments import Layers
 from atmosbox.scene.statistics import block_average
-from atmosbox.scene.units import Scale
-from atmosbox.theory.constants import BOLTZMANN
 from tests.oracle import column_at_rest
 
 S, P = Specular(), Periodic()
@@ -97,44 +94,6 @@ def test_spheres_in_gravity_stand_as_high_as_their_equation_of_state_says(gas, c
     points = theory.hydrostatic_layers(edges, number / side**2, 0.5, height - 0.5, kT, 1.0, gravity)
     assert np.abs((density.mean - points) / density.standard_error).max() > 10.0
     assert (np.abs(warmth.mean - kT) <= 4.0 * warmth.standard_error + 2.0 * kT / number).all()
-
-
-def test_discs_in_gravity_stand_as_high_and_press_as_their_equation_of_state_says(gas):
-    # as thin as the spheres above, for the same reason
-    number, gravity, kT, side, height = 300, 0.1, 1.0, 600.0, 40.0
-    bath = HeatBath(kT)
-    box = gas(
-        number, (side, 2.0, height), walls=(P, P, P, P, bath, bath), gravity=gravity, planar=True, layers=10, seed=46
-    )
-    instrument = Layers(10)
-    for _ in range(4050):
-        box.advance(box.time + 10.0)
-        instrument.sample(box, box.snapshot())
-        instrument.end_frame(box, box.snapshot())
-    assert box.contacts > 500_000
-    found = instrument.readings(Scale(1.0, 1.0, 1.0 * BOLTZMANN), settle=50)
-    edges = np.append(found["height_bnds"][:, 0], height)
-    column = number / side, 0.5, height - 0.5, kT, 1.0, gravity
-    truth = theory.hydrostatic_layers(edges, *column, 1.0, dimensions=2)
-    filled = float(theory.packing_fraction_discs(truth.max(), 1.0))
-    assert filled < 0.03
-    density, error = found["number_density"], found["number_density_se"]
-    assert (error[:6] / truth[:6] < 0.01).all()
-    off = density - truth
-    assert (np.abs(off) <= 4.0 * error + 0.005 * truth)[1:].all()
-    # at contact with the floor n = p / kT is Z times that of the bulk, and it falls off within a diameter
-    piled_up = 2.0 * filled * truth[0] / edges[1]
-    assert -4.0 * error[0] <= off[0] <= piled_up + 4.0 * error[0]
-    points = theory.hydrostatic_layers(edges, *column, dimensions=2)
-    assert np.abs((density - points) / error).max() > 10.0
-    reached = (np.minimum(edges[1:], height - 0.5) - np.maximum(edges[:-1], 0.5)) / np.diff(edges)
-    pressure, error = found["layer_pressure"] / BOLTZMANN, found["layer_pressure_se"] / BOLTZMANN
-    expected = theory.gas_pressure_discs(truth / reached, kT, 1.0) * reached
-    assert (np.abs(pressure - expected) <= 4.0 * error + 0.005 * expected).all()
-    # collisions have a visible effect, more significant than the difference of two and three dimensions
-    assert error[0] < 0.05 * (expected[0] - truth[0] * kT)
-    warmth, error = found["layer_temperature"], found["layer_temperature_se"]
-    assert (np.abs(warmth - kT) <= 4.0 * error + 2.0 * kT / number).all()
 
 
 def test_heavy_molecules_sink_each_by_its_own_scale_height(gas):

@@ -1,4 +1,4 @@
-"""Conservation at contacts, walls and pistons: energy, momentum, the ledger; and no molecule overlaps or escapes.
+"""Conservation at contacts, walls and pistons: energy, momentum, and the energy budget.
 
 These are identities of every single run, to rounding: nothing here is statistical.
 """
@@ -6,9 +6,9 @@ These are identities of every single run, to rounding: nothing here is statistic
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, Periodic, Piston, Specular
+from atmosbox.engine import HeatBath, Periodic, Piston
 
-S, P = Specular(), Periodic()
+P = Periodic()
 
 
 @pytest.mark.parametrize("contacts", [3e5, pytest.param(1e7, marks=pytest.mark.nightly)])
@@ -39,41 +39,6 @@ def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
     assert exchanged > 5.0 * sum(box.energy())
     assert box.wall_hits[5] > 1000
     assert box.contacts > 50_000
-
-
-BOXES = {
-    "walls and gravity": {"number": 191, "length": (10.0, 10.0, 10.0), "gravity": 0.3},
-    "periodic and dense": {"number": 400, "length": (8.2, 8.2, 8.2), "walls": (P,) * 6, "duration": 8.0},
-    "periodic, as small as it may be": {"number": 5, "length": (2.4, 2.4, 2.4), "walls": (P,) * 6},
-    "periodic along two axes": {
-        "number": 300,
-        "length": (10.0, 10.0, 12.0),
-        "walls": (P, P, P, P, S, S),
-        "gravity": 0.3,
-    },
-    "three sizes and masses": {
-        "number": 150,
-        "length": (14.0, 14.0, 14.0),
-        "diameter": np.repeat([0.4, 1.0, 4.0], [100, 40, 10]),
-        "mass": np.repeat([0.1, 1.0, 30.0], [100, 40, 10]),
-    },
-    "heat baths": {"number": 191, "length": (10.0, 10.0, 10.0), "walls": (HeatBath(4.0), HeatBath(1.0), S, S, S, S)},
-    "a plane": {"number": 200, "length": (20.0, 1.0, 20.0), "planar": True, "gravity": 0.1},
-}
-
-
-@pytest.mark.parametrize("name", BOXES)
-def test_nothing_overlaps_or_escapes_at_any_time(gas, out_of_place, name):
-    options = dict(BOXES[name])
-    duration = options.pop("duration", 60.0)
-    box = gas(options.pop("number"), options.pop("length"), seed=3, **options)
-    # at times that do not coincide with events: multiples of the golden ratio
-    for k in range(1, 61):
-        box.advance(duration * (k - 1 + (0.6180339887498949 * k) % 1.0) / 60.0)
-        outside, overlap = out_of_place(box)
-        assert outside <= 1e-9
-        assert overlap <= 1e-9
-    assert box.contacts > 10 * box.number
 
 
 def scattered_pairs():

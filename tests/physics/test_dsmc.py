@@ -130,32 +130,3 @@ def test_a_slow_piston_cools_and_warms_a_diatomic_gas_along_its_adiabat():
     assert noise < 0.0025
     assert abs(np.mean(exponents) + 0.4) <= 4.0 * noise
     assert np.abs(np.array(exponents) + 0.4).max() < 0.03
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("dt", [0.2, 1.0, 2.0])
-def test_self_diffusion_errs_with_the_time_step_as_the_trapezoid_rule_does(dt):
-    # D is the sum of the velocities' memory over steps, and that decays with the time t = m D / kT: the sum is
-    # D x coth x with x = dt / 2 t, 1 + (4/27 pi) (dt c / path)^2 for short steps
-    # (a cell of few molecules would remember their common momentum for as long as they are in it, and so err by one
-    # over their number: hence many)
-    number, side, blocks = 100_000, 160.0, 40
-    box = new_gas(number, side, seed=48, dt=dt, occupancy=1000.0)
-    density = number / side**3
-    diffusivity = 0.375 / math.sqrt(math.pi) * 1.018954 / density
-    x = 0.5 * box.time_step / diffusivity
-    expected = diffusivity * x / math.tanh(x)
-    memory = math.ceil(8.0 * diffusivity / box.time_step)
-    box.advance(2.0 * diffusivity)
-    sums = []
-    for _ in range(blocks):
-        start = box.snapshot().velocity
-        total = 0.5 * np.mean(start**2)
-        for _ in range(memory):
-            box.advance(box.time + box.time_step * (1.0 + 1e-6))
-            total += np.mean(start * box.snapshot().velocity)
-        sums.append(total * box.time_step)
-    mean, error = block_average(np.array(sums))
-    assert error / expected < 0.002
-    # what is left of the memory after so long, and the finite box, are below 0.1 %
-    assert abs(mean - expected) <= 4.0 * error + 0.001 * expected

@@ -10,12 +10,12 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import Periodic, Specular
+from atmosbox.engine import Periodic
 from atmosbox.engine.core.measure import mean_free_path
 from atmosbox.scene.statistics import block_average
 from tests.oracle import kinetic_gas
 
-S, P = Specular(), Periodic()
+P = Periodic()
 FINITE = 1.5
 
 # packing fraction, Z (Kolafa, Labik, Malijevsky 2004), collision rate per molecule, mean free path

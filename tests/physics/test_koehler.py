@@ -112,30 +112,6 @@ def test_the_vapour_over_a_drop_with_salt_follows_koehler(number, vapour):
     assert kelvin(held) - measured > 6.0 * error
 
 
-@many_events
-@pytest.mark.nightly
-def test_the_measured_maximum_is_that_of_koehler():
-    # a cubic in ln n through the humidity over drops of eight sizes, on both sides of the maximum
-    salt, noise = 20.0, np.random.default_rng(8)
-    rows = np.array([over_drop(number, 30, salt, 30_000) for number in (16, 22, 32, 46, 66, 94, 134, 190)])
-    x, y, error = np.log(rows[:, 2]), np.log(rows[:, 0]), rows[:, 1] / rows[:, 0]
-
-    def top(y):
-        fine = np.linspace(x[0], x[-1], 2000)
-        curve = np.polyval(np.polyfit(x, y, 3, w=1.0 / error), fine)
-        assert 0 < curve.argmax() < len(fine) - 1
-        return fine[curve.argmax()], curve.max()
-
-    found = np.array(top(y))
-    spread = np.std([top(y + error * noise.standard_normal(len(y))) for _ in range(300)], axis=0)
-    ball = 4.0 / 3.0 * math.pi * BALL**3
-    drop = law.critical_drop(TENSION, ball, 1.0, particles=salt, core=ball)
-    expected = np.log([drop.number, drop.humidity])
-    assert spread[0] < 0.25
-    assert spread[1] < 0.006
-    assert (np.abs(found - expected) <= 4.0 * spread).all(), (found, expected, spread)
-
-
 # ------------------------------------------------------------------ which drops grow
 
 FINE = 0.0075

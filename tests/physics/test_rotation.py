@@ -10,10 +10,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.engine import Specular
 from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
-
-S = Specular()
 
 
 def shares(box, warm_up, step, samples):
