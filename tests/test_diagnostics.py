@@ -8,9 +8,6 @@ import pytest
 from atmosbox.errors import EngineError
 from atmosbox.file.dataset import dataset, headline_variables
 from atmosbox.file.netcdf import read, write
-from atmosbox.scene.instruments import Layers
-from atmosbox.scene.units import Scale
-from atmosbox.theory.constants import BOLTZMANN
 
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 
@@ -68,21 +65,3 @@ def test_a_headline_becomes_four_numbers_in_si():
     assert held["lapse_rate"].attrs["display_units"] == "K km-1"
     assert held["lapse_rate"].attrs["comment"] == "a finite rise"
     assert held["lapse_rate"].attrs["units_metadata"] == "temperature: difference"
-
-
-def test_a_temperature_of_two_molecules_seen_once_is_hardly_known():
-    rng, layers = np.random.default_rng(3), Layers(2)
-    parcel = SimpleNamespace(
-        length=np.full(3, 4.0), mass=np.ones(40), planar=False, volume=64.0, virial=np.zeros(2), energy=lambda: (60.0,)
-    )
-    for frame in range(50):
-        height = np.ones(40)
-        height[:2] = 3.0 if frame == 30 else 1.0
-        place = np.stack([height] * 3, axis=1)
-        parcel.time = frame + 1.0
-        layers.sample(parcel, SimpleNamespace(position=place, velocity=rng.normal(size=(40, 3))))
-        layers.end_frame(parcel, None)
-    found = layers.readings(Scale(1.0, 1.0, BOLTZMANN), settle=0)
-    low, high = found["layer_temperature_se"] / found["layer_temperature"]
-    assert low == pytest.approx(np.sqrt(2.0 / (3 * 39 * 50)), rel=0.5)
-    assert high > 0.8

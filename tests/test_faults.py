@@ -84,8 +84,7 @@ TURKISH = "tr_TR.UTF-8"
     [
         (["-W", "error"], {"LC_ALL": TURKISH, "LANG": TURKISH, "TERM": None, "TZ": "Pacific/Kiritimati"}),
         ([], {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NOBODY),
-        # it translates all libraries anew; test_house looks at what is left out
-        pytest.param(["-O"], {}, marks=pytest.mark.nightly),
+        pytest.param(["-O"], {}, marks=pytest.mark.nightly),  # it translates all libraries again
     ],
     ids=["-W error, Turkish, far zone", "C, no home", "-O"],
 )
@@ -198,21 +197,3 @@ def test_a_folder_that_nothing_may_be_written_to_is_refused_and_a_cache_there_is
 
 
 # Caches
-
-
-@pytest.mark.soak
-def test_a_cache_of_which_every_file_is_damaged_is_made_anew(usual, tmp_path):
-    home = tmp_path / "cache"
-    home.mkdir(mode=0o700)
-    assert command(SHORT, tmp_path / "first", NUMBA_CACHE_DIR=str(home))[0] == 0
-    draw = random.Random(5)
-    for path in (path for path in home.rglob("*") if path.is_file()):
-        content = path.read_bytes()
-        bit = draw.randrange(max(len(content), 1))
-        flipped = bytes([content[bit] ^ 1]) if content else b""
-        others = [b"", content[: len(content) // 2], content[:-1], content[:bit] + flipped + content[bit + 1 :]]
-        path.write_bytes(draw.choice(others))
-    for name in ("second", "third"):
-        status, _, said = command(SHORT, tmp_path / name, NUMBA_CACHE_DIR=str(home))
-        assert status == 0, said
-        assert same(tmp_path / name, usual)

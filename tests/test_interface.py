@@ -65,7 +65,7 @@ def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
     both = ab.compare(lifted, warm)
     assert repr(both).splitlines()[0] == "lifting-dry: temperature 15 degC / 30 degC"
     assert any(line.startswith("temperature at 300 hPa") for line in repr(both).splitlines())
-    assert {"<pre", "<img alt="} <= {word for word in ("<pre", "<img alt=") if word in both._repr_html_()}
+    assert "<pre" in both._repr_html_()
     assert both.figure.axes
 
 

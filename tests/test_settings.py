@@ -206,11 +206,7 @@ def test_what_a_user_sets_is_kept_in_the_documented_unit_and_is_there_in_si():
 
 
 def test_there_is_no_way_round_the_checks():
-    for make in (
-        lambda asked: Settings(**asked),
-        Settings.from_user,
-        lambda asked: Settings.with_defaults(**asked)(),
-    ):
+    for make in (lambda asked: Settings(**asked), Settings.from_user, lambda asked: Settings.with_defaults(**asked)()):
         assert make({"temperature": "77 degF"}).si.temperature == 298.15
         for wrong, said in [
             ({"temperature": "5 m"}, "temperature = 5 m is a length"),
@@ -245,14 +241,8 @@ def test_an_unknown_name_is_refused_with_the_nearest_that_the_value_can_be_given
         (float, 15.0, "must be declared with setting"),
         (list[float], setting(15.0, "degC", "t"), "must be an int, a float, a bool or a str"),
         (bool, setting(True, "1", "t"), "must have a unit if it is a number"),
-        *(
-            (float, setting(*wrong, "t", high=500.0), "The setting t of .*Wrong ")
-            for wrong in [(15.0, ""), (15.0, "blorp")]
-        ),
-        *(
-            (float, setting(*wrong, "t", high=500.0), "The setting t of .*Wrong ")
-            for wrong in [(600.0, "degC"), ("x", "K")]
-        ),
+        (float, setting(15.0, "blorp", "t"), "The setting t of .*Wrong "),
+        (float, setting(600.0, "degC", "t", high=500.0), "The setting t of .*Wrong "),
     ],
 )
 def test_a_setting_that_is_declared_wrongly_is_refused_where_it_is_written(kind, declared, said):

@@ -101,8 +101,7 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
 
 
 @pytest.mark.parametrize(
-    ("walls", "gravity"),
-    [(TURNING, 0.0), ((*TURNING[:4], *SMOOTH[:2]), 0.3), ((*SMOOTH[:5], Piston(-0.05)), 0.3)],
+    ("walls", "gravity"), [(TURNING, 0.0), ((*TURNING[:4], *SMOOTH[:2]), 0.3), ((*SMOOTH[:5], Piston(-0.05)), 0.3)]
 )
 def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):
     number, side = (BLOCK + 500, 8.0) if COMPILED else (40, 8.0)

@@ -5,14 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import (
-    HeatBath,
-    ParcelSet,
-    Piston,
-    Ramp,
-    RefusedError,
-    Specular,
-)
+from atmosbox.engine import HeatBath, ParcelSet, Piston, Ramp, RefusedError, Specular
 from atmosbox.engine.exact.reference import Reference
 from tests.engine.boxes import SMOOTH, TURNING, Pulse, apart, many_events
 
@@ -40,10 +33,7 @@ def box(name, number=40, **changes):
         "walls": SMOOTH,
         "seed": 77,
     }
-    mixture = {
-        "mass": random.choice([1.0, 30.0], number),
-        "diameter": random.choice([0.1, 0.3, 1.0], number),
-    }
+    mixture = {"mass": random.choice([1.0, 30.0], number), "diameter": random.choice([0.1, 0.3, 1.0], number)}
     if name == "piston":
         made |= {"walls": (*(Specular(),) * 4, HeatBath(1.5), Piston()), "gravity": 0.3, "driver": Pulse(speeds=GENTLE)}
     elif name == "mixed":

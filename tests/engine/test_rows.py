@@ -189,22 +189,6 @@ def test_no_contact_is_missed_under_strong_gravity_and_a_piston_that_comes_down(
 
 
 @many_events
-def test_no_contact_is_missed_where_layers_follow_molecules_that_fall():
-    # spread evenly over ten scale heights: with the layers of equilibrium, rows high up would be too short
-    parcel = ParcelSet(**gas(800, (24.0, 24.0, 200.0), walls=SMOOTH, gravity=0.3))
-    layers = []
-    while parcel.time < 30.0:
-        if not layers or parcel._grid.edges[2][1] != layers[-1]:
-            layers.append(parcel._grid.edges[2][1])
-            assert misses_none(parcel, 20, 0.05) > 5
-        parcel.advance(parcel.time + 0.5)
-    assert parcel._modes.rows
-    assert len(layers) > 2
-    assert layers[0] > 2.0 * min(layers)  # the lowest has become thinner
-    assert parcel.ledger() < 1e-12
-
-
-@many_events
 def test_sizes_that_fit_the_cells_are_met_as_all_pairs_say():
     random = np.random.default_rng(5)
     sizes = random.choice([0.3, 0.8, 1.0], 300)

@@ -182,11 +182,7 @@ def test_a_copy_does_what_the_original_does(name):
     box = BOXES[name]()
     box.advance(20.0)
     then = bits(box)
-    twins = {
-        "copy": copy.deepcopy(box),
-        "pickle": through_pickle(box),
-        "file": through_a_file(box, BOXES[name]),
-    }
+    twins = {"copy": copy.deepcopy(box), "pickle": through_pickle(box), "file": through_a_file(box, BOXES[name])}
     for how, twin in twins.items():
         assert bits(twin) == then, how
         twin.advance(40.0)

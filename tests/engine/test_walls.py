@@ -70,8 +70,7 @@ def test_a_heat_bath_emits_tangential_velocities_as_gaussian(diatomic):
 
 
 @pytest.mark.parametrize(
-    ("rotation", "planar", "energy"),
-    [(0.0, False, 2.0), (2.0, False, 3.0), (3.0, False, 3.5), (0.0, True, 1.5)],
+    ("rotation", "planar", "energy"), [(0.0, False, 2.0), (2.0, False, 3.0), (3.0, False, 3.5), (0.0, True, 1.5)]
 )
 def test_emitted_molecules_carry_the_energy_of_a_flux(rotation, planar, energy):
     # per kT: 1 in the normal velocity, 1/2 in each tangential one and each degree of freedom of rotation; the sum of as

@@ -24,9 +24,7 @@ def nothing_hangs():
     ("name", "case"),
     [
         pytest.param(
-            *(name, case),
-            id=f"{name}, {case.name}",
-            marks=[pytest.mark.nightly] if name in case.later.split() else [],
+            *(name, case), id=f"{name}, {case.name}", marks=[pytest.mark.nightly] if name in case.later.split() else []
         )
         for name in engines.names()
         for family in FAMILIES.values()

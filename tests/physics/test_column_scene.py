@@ -4,15 +4,11 @@ Means allow 4 standard errors from 20 blocks: a false alarm once in 1 500 per co
 some 90 here), and never for these.
 """
 
-import json
 import math
 
 import numpy as np
 import pytest
 
-from atmosbox.engine import ParcelSet
-from atmosbox.scene import engines
-from atmosbox.scene.engines import engine_choice
 from atmosbox.scene.statistics import block_average
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -20,19 +16,6 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 def run(**settings):
     return runner.execute(runner.prepare("atmosphere", settings), command="atmosbox run atmosphere")
-
-
-def facts(engine=engines.EXACT, **settings):
-    prepared = runner.prepare("atmosphere", settings)
-    return prepared.module.build(prepared.settings, engine).facts
-
-
-@pytest.fixture
-def ideal(monkeypatch):
-    """Return an engine that declares that its molecules have no excluded volume."""
-    each = engines.Engine("roomless", "molecules without volume", lambda: ParcelSet, ideal=True)
-    monkeypatch.setattr(engine_choice, "ENGINES", {**engines.ENGINES, each.name: each})
-    return engines.EngineChoice(each)
 
 
 @pytest.mark.parametrize(("floor", "start"), [("heat-bath", "equilibrium"), ("isolated", "bottom")])
@@ -88,34 +71,6 @@ def test_the_mean_height_is_that_of_the_closed_form_however_high_the_column(corn
     # centres are between one radius above the floor and one below the ceiling
     radius = 0.5 * prepared.module.Column(prepared.settings).diameter * scale_height
     assert stated.theory == pytest.approx(radius + closed(si.height - 2.0 * radius), rel=1e-12)
-
-
-@pytest.mark.parametrize("plane", [False, True])
-def test_the_theory_of_molecules_without_volume_is_barometric(ideal, plane):
-    settings = {"plane": plane, "molecules": 300, "knudsen": 0.05, "duration": 1.0, "start": "equilibrium"}
-    prepared = runner.prepare("atmosphere", settings)
-    hard = run(**settings).dataset
-    parameters = json.loads(hard.attrs["atmosbox_parameters"]) | {"engine": str(ideal)}
-    roomless = hard.assign_attrs(atmosbox_parameters=json.dumps(parameters))
-    theory = [prepared.module.theory(dataset, prepared.settings) for dataset in (hard, roomless)]
-    # layers between the walls follow the exponential; only half a diameter at each wall has no centres
-    scale_height = BOLTZMANN * 288.15 / (DRY_AIR.molecule_mass * 9.80665)
-    radius = 0.5 * prepared.module.Column(prepared.settings).diameter * scale_height
-    edges = np.clip(np.append(hard.height_bnds[:, 0], hard.height_bnds[-1, 1]), radius, 25e3 - radius)
-    above = np.exp(-edges / scale_height)
-    share = -np.diff(above) / (above[0] - above[-1])
-    for name in ("number_density", "layer_pressure"):
-        found = theory[1][f"{name}_theory"]
-        assert np.allclose(found / found.sum(), share, rtol=1e-11, atol=0.0)
-        assert np.array_equal(theory[0][f"{name}_barometric"], theory[1][f"{name}_barometric"])
-        assert np.abs(theory[0][f"{name}_theory"] / found - 1.0).max() > 0.05
-    heights = [
-        next(each.theory for each in prepared.module.headlines(dataset, prepared.settings) if each.unit == "m")
-        for dataset in (hard, roomless)
-    ]
-    assert heights[1] < 0.99 * heights[0]
-    assert "without excluded volume" in facts(ideal, **settings)["exaggeration"]
-    assert "excluded volume" not in facts(**settings)["exaggeration"]
 
 
 def test_a_column_that_starts_uniform_falls_warms_and_comes_to_the_profile_of_equilibrium():

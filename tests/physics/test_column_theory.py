@@ -36,15 +36,7 @@ def test_a_barometric_column_holds_its_molecules_and_carries_their_weight():
     assert aloft == pytest.approx(ceiling, rel=1e-14)
 
 
-DENSE = {
-    "molecules_per_area": 3.0,
-    "bottom": 0.5,
-    "top": 11.5,
-    "kT": 1.2,
-    "mass": 1.5,
-    "gravity": 0.2,
-    "diameter": 1.0,
-}
+DENSE = {"molecules_per_area": 3.0, "bottom": 0.5, "top": 11.5, "kT": 1.2, "mass": 1.5, "gravity": 0.2, "diameter": 1.0}
 
 
 PLANE = DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "dimensions": 2}

@@ -18,8 +18,8 @@ from atmosbox.scene.statistics import block_average
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 
 SMALL, MASS, AIR_MASS, PHI, C_L = 0.02, 0.62, 1.0, 3.0, 5.0
-AIR, BLOCKS, PINNED = 2, 40, 1e12
-MIDDLE, PAIR = ((0.5, 0.5, 0.5),), ((0.25, 0.5, 0.5), (0.75, 0.5, 0.5))
+AIR, BLOCKS = 2, 40
+MIDDLE = ((0.5, 0.5, 0.5),)
 CORNERS = np.array([[0.1, 0.1, 0.1], [0.9, 0.9, 0.1], [0.1, 0.9, 0.9], [0.9, 0.1, 0.9]])
 
 
@@ -73,23 +73,6 @@ def normal(log_weight):
     return weight / weight.sum()
 
 
-def microcanonical(total, molecules, drops):
-    """Return the probability of n molecules in the liquid, n = 0, 1, ..., and their mean energy.
-
-    It is that of a mist, z^v / v! M^(C + F / 2 - 1) / Gamma(C + F / 2) with M = E - phi v, times room and ways.
-    """
-    n = np.arange(molecules + 1)
-    v = molecules - n
-    capacity = C_L * n + drops.nuclei
-    shape = capacity + 3.0 * v + 2.5 * AIR
-    left = total - PHI * v
-    assert (left > 0.0).all()
-    log_weight = v * math.log(drops.substance.volatility) - special.gammaln(v + 1.0)
-    log_weight += (shape - 1.0) * np.log(left) - special.gammaln(shape)
-    log_weight += log_room(drops, molecules) + log_ways(drops, molecules)
-    return normal(log_weight), left * capacity / shape
-
-
 def canonical(molecules, drops, e_s, air=AIR):
     """Return the probability of n molecules in the liquid between heat baths of kT = 1."""
     v = molecules - np.arange(molecules + 1)
@@ -119,71 +102,9 @@ def agrees(values, exact, within):
 # ------------------------------------------------------------------ an isolated box
 
 
-@pytest.mark.parametrize(
-    ("nuclei", "sticking", "ball"),
-    [
-        (10.0, 1.0, 0.0),
-        (0.0, 0.5, 0.2),
-        *(
-            pytest.param(*case, marks=pytest.mark.nightly)
-            for case in ((0.0, 1.0, 0.0), (10.0, 0.3, 0.0), (10.0, 1.0, 0.2))
-        ),
-    ],
-)
-def test_an_isolated_box_with_a_drop_visits_all_states_alike(nuclei, sticking, ball):
-    # a ball of 0.2 makes the drop half as wide again with three of them: it then leaves a tenth less room
-    molecules = 3
-    facts = {"nucleus": 0.2, "nucleus_mass": PINNED, "molecule_radius": ball, "sticking": sticking}
-    drops = Drops(water(2.0), number=molecules, kT=1.6, nuclei=nuclei, position=MIDDLE, **facts)
-    parcel = box(drops, 3, kT=1.6)
-    chance, energy = microcanonical(sum(parcel.energy()) + parcel.condensed_energy, molecules, drops)
-    rows = sampled(parcel, 4.0, 20_000, lambda box: (box.liquid, box.liquid_energy))
-    here = rows[:, :1] == np.arange(molecules + 1)
-    agrees(here, chance, 0.009)
-    agrees(here * (rows[:, 1:] - energy), 0.0, 0.04)
-
-
-@pytest.mark.parametrize(("ball", "nucleus", "seed"), [(0.0, 0.12, 3), (0.12, 0.1, 7)])
-def test_two_drops_share_their_molecules_in_every_way_alike_but_for_the_room_that_they_take(ball, nucleus, seed):
-    molecules, facts = 3, {"nucleus": nucleus, "nucleus_mass": PINNED, "molecule_radius": ball}
-    drops = Drops(water(1.0), number=molecules, kT=1.6, nuclei=10.0, position=PAIR, **facts)
-    parcel = box(drops, seed, kT=1.6)
-    total = sum(parcel.energy()) + parcel.condensed_energy
-    held = sampled(parcel, 4.0, 30_000, lambda box: box.drops()[2])
-    seen, log_weight = [], []
-    for n, first in ((k, j) for k in range(molecules + 1) for j in range(k + 1)):
-        v = molecules - n
-        volume = (1.0 - SMALL) ** 3
-        for each in (first, n - first):
-            volume -= 4.0 / 3.0 * math.pi * (np.cbrt(nucleus**3 + each * ball**3) + 0.5 * SMALL) ** 3
-        shape = C_L * n + 10.0 + 3.0 * v + 2.5 * AIR
-        weight = v * math.log(drops.substance.volatility) - special.gammaln(v + 1.0) + (v + AIR) * math.log(volume)
-        log_weight.append(weight + (shape - 1.0) * math.log(total - PHI * v) - special.gammaln(shape))
-        seen.append((held.sum(axis=1) == n) & (held[:, 0] == first))
-    agrees(np.array(seen).T, normal(np.array(log_weight)), 0.007)
-    assert parcel.merged == 0
-
-
 # ------------------------------------------------------------------ between heat baths
 
 BATHS = (HeatBath(1.0),) * 6
-
-
-@pytest.mark.parametrize(
-    ("position", "saturated"), [pytest.param(MIDDLE, 20.0, marks=pytest.mark.nightly), (PAIR, 20.0), (MIDDLE, 3.0)]
-)
-def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
-    molecules = round(6 * saturated) - 7
-    facts = {"nucleus": 0.15, "nucleus_mass": PINNED, "molecule_radius": 0.0, "nuclei": 10.0}
-    drops = Drops(water(saturated), number=molecules, position=position, **facts)
-    parcel = box(drops, 6, walls=BATHS)
-    chance = canonical(molecules, drops, drops.substance.saturation_pressure(1.0))
-    vapour = float(chance @ (molecules - np.arange(molecules + 1)))
-    room = (1.0 - SMALL) ** 3 - len(position) * 4.0 / 3.0 * math.pi * (0.15 + 0.5 * SMALL) ** 3
-    if saturated > 10.0 and len(position) == 1:
-        assert vapour / room == pytest.approx(drops.substance.saturation_pressure(1.0), rel=1e-6)
-    rows = sampled(parcel, 4.0, 12_000, lambda box: (box.vapour, box.liquid_kT))
-    agrees(rows, np.array([vapour, 1.0]), 0.015 * np.array([vapour, 1.0]))
 
 
 @pytest.mark.parametrize(

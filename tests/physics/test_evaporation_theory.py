@@ -4,11 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy import integrate, optimize, special
+from scipy import integrate, special
 
 from atmosbox import theory
 from atmosbox.theory.constants import BOLTZMANN, WATER
-from tests.oracle import moist_adiabat
 
 C_L, PHI = theory.LIQUID_HEAT_CAPACITY, theory.BINDING_TEMPERATURE
 ZERO_CELSIUS = 273.15
@@ -40,16 +39,6 @@ def test_evaporation_keeps_enthalpy_and_water_and_ends_at_saturation():
                         assert end.liquid == 0.0
 
 
-def test_a_puddle_dries_out_and_a_pool_does_not():
-    pool = np.array([0.0, 1.0, 100.0, 540.0, 1000.0, 1e4])
-    end = theory.evaporation_equilibrium(1e5, 293.15, 1e5, 1183.0, pool)
-    assert np.all(end.liquid[:3] == 0.0)
-    assert np.all(end.liquid[4:] > 0.0)
-    cooling = (293.15 - end.temperature)[1:3] * (3.5e5 + 4.0 * (1183.0 + pool[1:3]))
-    latent = moist_adiabat.water_latent_heat_vaporization(293.15) * WATER.molecule_mass / BOLTZMANN
-    assert np.allclose(cooling, pool[1:3] * latent, rtol=1e-12)
-
-
 AIRS = [(993, 32, 15), (1000, 20, 10), (1000, 30, 25), (1000, 20, 0), (700, 0, -20)]
 
 
@@ -73,19 +62,6 @@ def test_the_wet_bulb_is_a_little_above_metpys_which_is_normands():
         theirs = wet_bulb_temperature(p * units.hPa, t * units.degC, td * units.degC).m_as("K")
         ours = float(theory.wet_bulb_temperature(100.0 * p, t + ZERO_CELSIUS, td + ZERO_CELSIUS))
         assert ours - theirs == pytest.approx(apart, abs=0.002)
-
-
-@pytest.mark.parametrize(("t", "td", "apart"), [(20, 0, 0.096), (20, 10, 0.057), (40, 0, 0.225)])
-def test_a_psychrometer_of_the_wmo_reads_a_little_higher(t, td, apart):
-    e = float(theory.saturation_vapor_pressure(td + ZERO_CELSIUS))
-
-    def surplus(wet):
-        coefficient = 6.53e-4 * (1.0 + 9.44e-4 * wet)
-        return float(theory.saturation_vapor_pressure(wet + ZERO_CELSIUS)) - coefficient * 101325.0 * (t - wet) - e
-
-    reading = optimize.brentq(surplus, -30.0, t)
-    ours = float(theory.wet_bulb_temperature(101325.0, t + ZERO_CELSIUS, td + ZERO_CELSIUS)) - ZERO_CELSIUS
-    assert reading - ours == pytest.approx(apart, abs=0.002)
 
 
 def mean_over_canonical_energies(function, heat, start):

@@ -43,8 +43,7 @@ def test_the_pressure_on_a_moving_piston_is_that_of_the_molecules_that_catch_it(
 
 
 @pytest.mark.parametrize(
-    ("height", "hectopascal"),
-    [(0, 1013.25), (1000, 898.746), (5000, 540.199), (11000, 226.320), (20000, 54.749)],
+    ("height", "hectopascal"), [(0, 1013.25), (1000, 898.746), (5000, 540.199), (11000, 226.320), (20000, 54.749)]
 )
 def test_the_standard_atmosphere_has_its_tabulated_pressure(height, hectopascal):
     # A table that says 226.321 is the US standard of 1976, whose air weighs 28.9644 g/mol, not 28.96442.

@@ -193,20 +193,6 @@ def test_the_saturated_adiabats_stand_beside_metpys():
     assert np.allclose(carried - theirs, [-0.092, -0.121, 0.146, 1.686], atol=2e-3)
 
 
-def test_below_its_cloud_base_a_parcel_cannot_know_whether_it_will_rain():
-    dew = theory.dewpoint(theory.vapor_pressure(1e5, 0.008))
-    base = theory.lcl(1e5, 288.15, dew)
-    p = np.append(np.linspace(1e5, base[0], 10), 6e4)
-    paths = [theory.parcel_path(p, 1e5, 288.15, 0.008, bound) for bound in (np.inf, 0.0)]
-    assert paths[0].temperature[9] == pytest.approx(float(base[1]), rel=1e-13)
-    assert np.allclose(paths[0].temperature[:10], paths[1].temperature[:10], rtol=1e-14)
-    assert paths[0].temperature[10] > paths[1].temperature[10] + 0.01
-    assert np.all(paths[0].liquid[:9] == 0.0)
-    assert paths[0].liquid[10] > 1e-3
-    upper = moist_adiabat.pseudoadiabat(6e4, float(base[0]), float(base[1]))
-    assert paths[1].temperature[10] == pytest.approx(float(upper), rel=1e-11)
-
-
 def test_foehn_air_that_has_lost_its_rain_comes_down_dry_and_warm():
     over = np.concatenate([np.linspace(1e5, 7e4, 31), np.linspace(7e4, 1e5, 31)])
     path = theory.parcel_path(over, 1e5, 288.15, 0.008, 0.0)

@@ -7,15 +7,7 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine import (
-    AttractingParcelSet,
-    HeatBath,
-    Periodic,
-    RandomBath,
-    Specular,
-    SquareWell,
-    random_positions,
-)
+from atmosbox.engine import AttractingParcelSet, HeatBath, Periodic, RandomBath, Specular, SquareWell, random_positions
 from atmosbox.scene.statistics import block_average
 from tests.oracle.well_energy import square_well_energy
 

@@ -60,40 +60,6 @@ def test_an_isolated_box_visits_all_states_alike(wet, name, dt, air, samples):
     wet.holds_the_balance(box, 3, air, options["nuclei"], substance, step=step, samples=samples)
 
 
-@pytest.mark.parametrize(
-    ("kind", "air", "air_diameter"),
-    [
-        (Mist, 2, SMALL),
-        (Pool, 1, 0.3),
-        *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((Mist, 1, 0.3), (Pool, 2, SMALL))),
-    ],
-)
-def test_the_liquid_shares_its_energy_evenly_with_air_of_any_size(wet, kind, air, air_diameter):
-    # a ball of a third of the box: the vapour, which is small, would have three times its room
-    nuclei, substance = 10.0, wet.water(1e-9, 40.0)
-    liquid = kind(substance, number=1, nuclei=nuclei, **({"area": 8.0} if kind is Mist else {}))
-    box = wet.box(liquid, air, air_diameter=air_diameter, seed=5)
-    total = sum(box.energy()) + box.condensed_energy
-    reach = 0.5 * air_diameter, 1.0 - 0.5 * air_diameter
-    box.advance(50.0)
-    rows = []
-    for k in range(20_000):
-        box.advance(54.0 + 4.0 * k)
-        here = box.snapshot()
-        along = 0.5 * AIR_MASS * np.sum(here.velocity**2, axis=0) / total
-        height = np.mean((here.position[:, 2] - reach[0]) / (reach[1] - reach[0]))
-        share = box.liquid_energy / total
-        rows.append([share, share**2, *along, here.rotational_energy.sum() / total, height])
-    mean, error = block_average(rows, BLOCKS)
-    # beta distributed: one k for each degree of freedom of the liquid, and half a k for each of the air
-    capacity, all_of_it = nuclei + C_L, nuclei + C_L + 2.5 * air
-    share = capacity / all_of_it
-    exact = [share, share * (capacity + 1.0) / (all_of_it + 1.0), *[0.5 * air / all_of_it] * 3, air / all_of_it, 0.5]
-    assert box.liquid == 1
-    assert (error < 0.003).all()
-    assert (np.abs(mean - exact) <= 4.0 * error).all()
-
-
 # ------------------------------------------------------------------ between heat baths
 
 

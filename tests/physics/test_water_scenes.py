@@ -12,10 +12,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from atmosbox import scenarios, theory
-from atmosbox.cli import app
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
@@ -78,20 +76,6 @@ def is_sound(outcome):
 
 
 @pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
-def test_a_file_of_a_scene_is_verified_and_the_same_seed_gives_the_same_numbers(scene, tmp_path):
-    first, again, other = usual(scene), run(scene), run(scene, seed=2)
-    is_sound(first)
-    path = write(first.dataset, tmp_path / "run.nc")
-    checks = runner.verify(read(path))
-    assert len(checks) >= 6
-    assert not [check for check in checks if not check.passed]
-    for name in first.dataset.data_vars:
-        assert np.array_equal(first.dataset[name], again.dataset[name], equal_nan=True), name
-    assert not np.array_equal(first.dataset.gas_temperature, other.dataset.gas_temperature)
-    assert all(each.agrees for each in other.headlines)
-
-
-@pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
 @pytest.mark.parametrize("extreme", [DRY, COLD, FEW], ids=["dry", "cold", "few"])
 def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     outcome = run(scene, **extreme[scene])
@@ -103,24 +87,6 @@ def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     if extreme is not FEW:
         assert "cloud_base" not in found(outcome)
         assert all(each.agrees for each in outcome.headlines)
-
-
-@pytest.mark.parametrize(
-    ("humidity", "liquid"),
-    [
-        (50.0, True),
-        (120.0, True),
-        *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((0.0, False), (100.0, True))),
-    ],
-)
-def test_vapour_condenses_until_its_pressure_is_that_of_saturation_or_it_is_used_up(humidity, liquid):
-    outcome = run("condensation", molecules=4000, duration=16.0, humidity=humidity)
-    is_sound(outcome)
-    assert all(each.agrees for each in outcome.headlines)
-    share = found(outcome)["mean_relative_humidity"]
-    assert share.theory == pytest.approx(0.01 * min(humidity, 100.0), abs=0.1)
-    # there are so few molecules of vapour that saturated air has some clusters, and less vapour
-    assert bool(outcome.dataset.liquid_molecule_count.any()) is liquid
 
 
 def test_a_parcel_too_dry_for_a_cloud_follows_the_dry_adiabat_and_states_no_base():
@@ -182,28 +148,6 @@ def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not()
     assert ends[True].theory - ends[False].theory > 2.0
     gap = ends[True].value - ends[False].value
     assert gap > 4.0 * math.hypot(ends[True].standard_error, ends[False].standard_error)
-
-
-@pytest.mark.parametrize(
-    ("scene", "given", "words", "fix"),
-    [
-        ("condensation", ["pressure=1hPa"], "humidity = 150 percent is more vapour", "humidity=4percent"),
-        ("lifting-moist", ["top_pressure=990hPa"], "is not below the pressure", "top_pressure=300hPa"),
-        ("lifting-moist", ["dewpoint=26degC"], "is above the temperature", "dewpoint=25degC"),
-        ("mountains", ["valley=2.5km"], "is higher than the lower mountain", "valley=2km"),
-        ("mountains", ["dewpoint=26degC"], "is above the temperature", "dewpoint=25degC"),
-    ],
-)
-def test_what_cannot_be_ends_with_status_2_and_what_to_type_instead(scene, given, words, fix, tmp_path):
-    typed = [word for each in given for word in ("--set", each)]
-    done = CliRunner().invoke(app, ["run", scene, *typed, "--out", str(tmp_path / "no.nc")], env={"COLUMNS": "300"})
-    assert done.exit_code == 2
-    assert words in done.stderr
-    assert f"--set {fix}" in done.stderr
-    assert not list(tmp_path.iterdir())
-    name, _, value = fix.partition("=")
-    before = dict(word.split("=") for word in given)
-    runner.prepare(scene, {**before, name: value})
 
 
 # ------------------------------------------------------------------ the molecules themselves
