@@ -221,6 +221,24 @@ def test_two_unlike_drops_share_their_molecules_as_their_surfaces_and_salts_have
     agrees(np.array([(held == way).all(axis=1) for way in ways]).T, normal(np.array(logs)), 0.015)
 
 
+@many_events
+def test_a_light_drop_that_flies_about_is_in_the_same_balance():
+    # it moves freely in the box, and has hardly more mass than a molecule
+    molecules, core, ball = 4, 0.12, 0.15
+    facts = {"saturated": 2.0, "tension": 0.0, "ball": ball, "nucleus": core, "nucleus_mass": 0.5, "nuclei": 10.0}
+    parcel = box(drops(molecules, **facts), 0, seed=8)
+    n = np.arange(molecules + 1.0)
+    own = 3.0 * np.log(1.0 - 2.0 * oracle.radii(n, core, ball))
+    chance = normal(np.log(chances(molecules, 2.0, 0.0, 0.0, core, ball, air=2, diameter=SMALL)) + own)
+
+    def read(box):
+        drop = box._fields[box._drops.record[0]]
+        flight = 0.5 * box._kinds.table["mass"][box._first_drop] * sum(drop["v" + axis] ** 2 for axis in "xyz")
+        return (*(box.liquid == n), flight, box.liquid_kT)
+
+    agrees(sampled(parcel, 20_000, read), np.array([*chance, 1.5, 1.0]), 0.03)
+
+
 # ------------------------------------------------------------------ readings and refusals of a box with such drops
 
 

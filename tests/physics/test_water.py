@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import special
 
 from atmosbox.engine import HeatBath, Mist, Periodic, Piston, Pool, Specular, Substance, random_positions
 from atmosbox.engine.core.jit import COMPILED
@@ -33,6 +34,124 @@ CASES = {
     "pool without nuclei of which a third sticks": (Pool, {"nuclei": 0.0, "sticking": 0.3}),
     "pool of which a third sticks": (Pool, {"nuclei": 10.0, "sticking": 0.3}),
 }
+
+
+def water(volatility, binding_energy=PHI):
+    """Return water whose saturation pressure at kT = 1 is ``volatility`` times exp(-binding energy)."""
+    return Substance(MASS, SMALL, binding_energy, C_L, volatility, rotation=3.0)
+
+
+def moist(
+    liquid,
+    air,
+    *,
+    parcel=MoistParcelSet,
+    side=1.0,
+    vapour=0,
+    seed=1,
+    kT=1.0,
+    air_diameter=SMALL,
+    height=None,
+    **options,
+):
+    """Return a box of air and vapour at random places, with its liquid."""
+    rng = np.random.default_rng(seed)
+    number = vapour + air
+    mass = np.r_[np.full(vapour, MASS), np.full(air, AIR_MASS)]
+    rotation = np.r_[np.full(vapour, 3.0), np.full(air, 2.0)]
+    length = np.array([side, side, height or side])
+    margin = 0.5 * air_diameter
+    return parcel(
+        margin + rng.uniform(size=(number, 3)) * (length - 2.0 * margin),
+        rng.standard_normal((number, 3)) * np.sqrt(kT / mass)[:, None],
+        length=length,
+        mass=mass,
+        diameter=np.r_[np.full(vapour, SMALL), np.full(air, air_diameter)],
+        rotation=rotation,
+        rotational_energy=kT * rng.standard_gamma(0.5 * rotation),
+        liquid=liquid,
+        seed=seed,
+        **options,
+    )
+
+
+def open_volume(box, diameter=SMALL):
+    return float(np.prod(box.length - diameter))
+
+
+def microcanonical(total_energy, molecules, air, nuclei, volume, substance):
+    """Return the probability of n molecules in the liquid, n = 0, 1, ..., and their mean energy and its variance.
+
+    The states of n molecules in the liquid, of energy U, are U^(C - 1) / Gamma(C) with C = c_l n + C_n; those of a gas
+    of F degrees of freedom are z^v / v! (E - phi v - U)^(F / 2 - 1) / Gamma(F / 2). Their product is a beta density:
+    its sum over U is M^(C + F / 2 - 1) / Gamma(C + F / 2), M = E - phi v, and U / M is Beta(C, F / 2). In a heat bath
+    the same states give a mean of z T^(F_v / 2 - c_l) exp(-phi / T) molecules of vapour, which must be V e_s / T: so z
+    is V times the volatility, since c_p - 1 = F_v / 2.
+    """
+    n = np.arange(molecules + 1)
+    v = molecules - n
+    capacity = substance.heat_capacity * n + nuclei
+    half = 0.5 * ((3.0 + substance.rotation) * v + 5.0 * air)
+    left = total_energy - substance.binding_energy * v
+    possible = left > 0.0
+    left = np.where(possible, left, 1.0)
+    log_weight = v * math.log(volume * substance.volatility) - special.gammaln(v + 1.0)
+    log_weight += (capacity + half - 1.0) * np.log(left) - special.gammaln(capacity + half)
+    log_weight = np.where(possible, log_weight, -np.inf)
+    weight = np.exp(log_weight - log_weight.max())
+    share = capacity / (capacity + half)
+    variance = left**2 * share * (1.0 - share) / (capacity + half + 1.0)
+    return weight / weight.sum(), left * share, variance
+
+
+def sampled(box, warm_up, step, samples):
+    """Return the number of molecules in the liquid and its energy, at equal intervals of time."""
+    box.advance(warm_up)
+    rows = np.empty((samples, 2))
+    for k in range(samples):
+        box.advance(warm_up + (k + 1) * step)
+        rows[k] = box.liquid, box.liquid_energy
+    return rows
+
+
+def mean_where(chosen, values):
+    """Return the mean of the chosen values and its standard error, from the means of blocks."""
+    sums, error = block_average(np.stack([chosen, chosen * values], axis=1), BLOCKS)
+    ratio = sums[1] / sums[0]
+    _, error = block_average(chosen * (values - ratio), BLOCKS)
+    return ratio, error / sums[0]
+
+
+def holds_the_balance(box, molecules, air, nuclei, substance, *, step, samples, diameter=SMALL):
+    """Check the probability of each number in the liquid, and the mean and variance of its energy, against theory."""
+    total = sum(box.energy()) + box.condensed_energy
+    chance, energy, variance = microcanonical(total, molecules, air, nuclei, open_volume(box, diameter), substance)
+    count, liquid_energy = sampled(box, 50.0, step, samples).T
+    assert box.ledger() < 1e-11
+    assert min(box.condensed, box.evaporated) > 1000
+    compared = []
+    for n in np.flatnonzero(chance > 0.01):
+        here = (count == n).astype(float)
+        mean, error = block_average(here, BLOCKS)
+        assert error < 0.01
+        compared.append((f"probability of {n}", mean, error, chance[n]))
+        if variance[n] > 0.0:
+            compared.append((f"energy of {n}", *mean_where(here, liquid_energy), energy[n]))
+            squares = (liquid_energy - energy[n]) ** 2
+            compared.append((f"variance of {n}", *mean_where(here, squares), variance[n]))
+        else:
+            assert liquid_energy[count == n] == pytest.approx(energy[n], abs=1e-11 * total)
+    assert len(compared) >= 6
+    assert not [row for row in compared if not abs(row[1] - row[3]) <= 4.0 * row[2]]
+
+
+def vapour_number(saturated, molecules):
+    """Return the mean of a Poisson number of mean ``saturated`` that cannot exceed the number of molecules."""
+    v = np.arange(molecules + 1)
+    weight = np.exp(v * math.log(saturated) - special.gammaln(v + 1.0))
+    return float(np.sum(v * weight) / weight.sum())
+
+
 QUICK = [
     *((name, None, 2, 25_000) for name in list(CASES)[::2]),
     ("mist without nuclei", None, 0, 25_000),
@@ -49,15 +168,15 @@ LONG = [
 @pytest.mark.parametrize(
     ("name", "dt", "air", "samples"), [*QUICK, *(pytest.param(*case, marks=pytest.mark.nightly) for case in LONG)]
 )
-def test_an_isolated_box_visits_all_states_alike(wet, name, dt, air, samples):
+def test_an_isolated_box_visits_all_states_alike(name, dt, air, samples):
     # 10 numbers a case: a false alarm once in 30 for all quick cases of fresh seeds
     kind, options = CASES[name]
-    substance, vapour = wet.water(2.0 * math.exp(PHI)), 0 if air else 2
+    substance, vapour = water(2.0 * math.exp(PHI)), 0 if air else 2
     engine = {} if dt is None else {"parcel": MoistDsmcParcel, "dt": dt}
     seed = 3 if samples == 25_000 else 13
-    box = wet.box(kind(substance, number=3 - vapour, kT=1.4, **options), air, vapour=vapour, seed=seed, **engine)
+    box = moist(kind(substance, number=3 - vapour, kT=1.4, **options), air, vapour=vapour, seed=seed, **engine)
     step = (1.0 if kind is Mist else 4.0) * (1.0 if dt is None else 1.25)
-    wet.holds_the_balance(box, 3, air, options["nuclei"], substance, step=step, samples=samples)
+    holds_the_balance(box, 3, air, options["nuclei"], substance, step=step, samples=samples)
 
 
 # ------------------------------------------------------------------ between heat baths
@@ -79,16 +198,16 @@ def test_an_isolated_box_visits_all_states_alike(wet, name, dt, air, samples):
         ),
     ],
 )
-def test_between_heat_baths_the_vapour_has_the_saturation_pressure(wet, parcel, kind, number, nuclei, sticking):
+def test_between_heat_baths_the_vapour_has_the_saturation_pressure(parcel, kind, number, nuclei, sticking):
     saturated = 20.0 if number > 100 else 2.0
-    substance = wet.water(saturated * math.exp(PHI))
+    substance = water(saturated * math.exp(PHI))
     facts = {"number": number - round(saturated), "nuclei": nuclei, "sticking": sticking}
     liquid = Mist(substance, area=8.0, **facts) if kind is Mist else Pool(substance, **facts)
     walls = BATHS if kind is Mist else OVER_POOL
-    box = wet.box(liquid, 2, parcel=parcel, vapour=round(saturated), seed=6, walls=walls)
-    volume, floor = wet.open_volume(box), (1.0 - SMALL) ** 2
+    box = moist(liquid, 2, parcel=parcel, vapour=round(saturated), seed=6, walls=walls)
+    volume, floor = open_volume(box), (1.0 - SMALL) ** 2
     area = liquid.area if kind is Mist else floor
-    exact = wet.vapour_number(substance.saturation_pressure(1.0) * volume, number)
+    exact = vapour_number(substance.saturation_pressure(1.0) * volume, number)
     box.advance(50.0)
     rows, samples = [], 500 if kind is Mist else 1000
     for _ in range(BLOCKS):
