@@ -82,14 +82,6 @@ def test_a_sweep_takes_lists_and_words(tmp_path):
 # Pages and bars
 
 
-def test_the_page_of_a_run_opens_in_the_browser_where_there_is_no_notebook(monkeypatch, boxed):
-    opened = []
-    monkeypatch.setattr(inline_page.webbrowser, "open", opened.append)
-    page = ab.show(boxed)
-    (address,) = opened
-    assert Path(address.removeprefix("file://")).read_text(encoding="utf-8") == page.text
-
-
 def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
     monkeypatch.setattr(inline_page, "in_notebook", lambda: True)
     file = tmp_path / "notebook.html"

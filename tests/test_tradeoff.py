@@ -1,6 +1,5 @@
 """Speed against accuracy: the ways of running a scene, the measurement, its files and its figure."""
 
-import csv
 import json
 import math
 import os
@@ -15,7 +14,6 @@ from typer.testing import CliRunner
 
 from atmosbox import scenarios
 from atmosbox.cli import app
-from atmosbox.cli import tradeoff as command
 from atmosbox.engine import CoarseStepWarning
 from atmosbox.errors import FileError
 from atmosbox.file.netcdf import read
@@ -79,15 +77,6 @@ def test_bias_and_noise_are_told_apart():
     assert abs(noise - 2.0) < 4.0 * 2.0 / math.sqrt(200.0)
 
 
-def test_the_noise_of_a_curve_is_no_bias():
-    # 25 points without bias: the part of the mean square due to chance is subtracted, to within its own scatter.
-    rng = np.random.default_rng(2)
-    bias, _, noise = _summary(rng.normal(size=(16, 25)), np.ones((16, 25)))
-    assert noise == pytest.approx(1.0, abs=4.0 / math.sqrt(2 * 15 * 25))
-    assert bias**2 < 4.0 * math.sqrt(2.0 / 25.0) / 16.0
-    assert np.isnan(_summary(np.full((2, 3), np.nan), np.ones((2, 3)))).all()
-
-
 def test_a_measurement_has_errors_beside_costs(found):
     assert found.sizes["rung"] == 3
     assert (found.members.values >= 1).all()
@@ -115,14 +104,6 @@ def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
     assert enough == chosen.met
     assert str(way.engine.item()) == chosen.way.engine
     assert scenarios.load(scene).Settings.from_user(json.loads(way.settings.item())).changed() == chosen.way.settings
-
-
-def test_the_table_has_a_line_for_every_run(found):
-    lines = command.lines(found, 200)
-    assert sum(line.startswith(("exact, molecules=100", "stepped:delta=0.4")) for line in lines) == 3
-    records = list(csv.DictReader(command.as_csv(found).splitlines()))
-    assert [record["run"] for record in records] == [str(name) for name in found.rung.values]
-    assert float(records[0]["temperature_at_700_hpa_noise_K"]) > 0.0
 
 
 def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):

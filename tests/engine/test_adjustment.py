@@ -122,21 +122,16 @@ def test_a_change_that_a_box_cannot_have_is_refused_in_a_sentence_and_changes_no
     mist, pool = damp(Mist(WATER, number=2, kT=1.0)), damp(Pool(WATER, number=2, kT=1.0))
     cases = [
         (column.set_wall_kT, (0.0,), "not positive"),
-        (column.set_wall_kT, (math.nan,), "finite"),
         (column.set_wall_kT, (1.0, 5), "z_high is no heat bath"),
-        (column.set_wall_kT, (1.0, 9), "9 is no heat bath"),
         (column.set_gravity, (-1.0,), "from 0 to "),
-        (column.set_gravity, (math.inf,), "finite"),
         (under_piston.set_wall_kT, (2.0,), "make one a HeatBath"),
         (endless.set_gravity, (1.0,), "fall for ever"),
         (mist.set_gravity, (1.0,), "no gravity"),
         (mist.set_open_pool, (0.5,), "only a pool can be covered"),
         (pool.set_open_pool, (1.5,), r"open share of the pool = 1\.5"),
         (under_piston.set_wall, (5, HeatBath(1.0)), "wall z_high is neither smooth nor a heat bath: choose"),
-        (under_piston.set_wall, (6, HeatBath(1.0)), "wall 6 is neither"),
         (under_piston.set_wall, (0, Periodic()), "wall x_low = Periodic.*: give Specular or HeatBath"),
         (under_piston.set_wall, (0, HeatBath(Ramp(1.0, 2.0, start=0.0, end=1.0))), "changes with time: give one"),
-        (under_piston.set_wall, (0, HeatBath(-1.0)), "kT of wall x_low"),
     ]
     for engine in ENGINES[1:]:
         gas = box(engine, walls=COLUMN, gravity=0.1)

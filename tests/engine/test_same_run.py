@@ -203,23 +203,6 @@ def test_another_seed_is_another_run_and_another_number_of_threads_the_same(made
     assert runs[0] == runs[1] != runs[2]
 
 
-def test_a_driver_that_cannot_be_saved_is_named():
-    class Odd:
-        interval = 1.0
-
-        def __init__(self):
-            self.file = open(__file__, encoding="utf-8")  # noqa: SIM115
-
-        def velocity(self, parcel):
-            return 0.0
-
-    driver = Odd()
-    box = ParcelSet(*gas(), length=(12.0,) * 3, walls=(*SMOOTH[:5], Piston()), driver=driver)
-    with pytest.raises(RefusedError, match=r"_driver\.file"):
-        box.state()
-    driver.file.close()
-
-
 def test_a_state_is_not_taken_for_that_of_another_box():
     with pytest.raises(RefusedError):
         BOXES["stepped"]().restore(BOXES["lift"]().state())

@@ -152,14 +152,6 @@ def test_the_heat_of_the_bath_is_in_the_ledger_and_it_keeps_its_temperature():
     assert np.mean(kinetic) == pytest.approx(1.5 * 200, abs=4.0 * error)
 
 
-def test_clocks_stay_small_in_a_long_run_without_a_change_of_what_happens():
-    box = gas(40, 0.05, 1.0, bath=0.5)
-    box.advance(17_000.0)
-    assert float(box._walls.epoch[0]) > 0.0
-    assert box.ledger() < 1e-12
-    assert set(map(tuple, box.pairs().tolist())) == near(box)
-
-
 def test_strength_and_gravity_may_change_and_the_ledger_has_it():
     box = gas(200, 0.3, 1.0)
     box.advance(5.0)

@@ -221,36 +221,17 @@ def test_a_cloud_that_holds_some_water_descends_wet_and_then_dry():
     assert np.allclose(entropy, entropy[0], rtol=1e-13)
 
 
-def test_more_water_than_air_can_hold_starts_as_a_cloud_or_rains_at_once():
-    most = float(theory.saturation_mixing_ratio(1e5, 293.15))
-    cloud = theory.parcel_path(1e5, 1e5, 293.15, 1.2 * most)
-    assert cloud.liquid == pytest.approx(0.2 * most, rel=1e-10)
-    rained = theory.parcel_path([1e5, 9e4], 1e5, 293.15, 1.2 * most, 0.0)
-    assert rained.rain[0] == pytest.approx(0.2 * most, rel=1e-10)
-    assert rained.temperature[1] == pytest.approx(float(moist_adiabat.pseudoadiabat(9e4, 1e5, 293.15)), rel=1e-12)
-    full = theory.parcel_path([1e5, 9e4], 1e5, 293.15, most, 0.0)
-    assert full.temperature[1] == pytest.approx(rained.temperature[1], rel=1e-10)
-
-
 def test_what_cannot_be_is_refused_with_a_sentence():
     cases = [
         (lambda: theory.saturation_vapor_pressure(-1.0), "0 K"),
-        (lambda: theory.saturation_vapor_pressure([280.0, np.nan]), "0 K"),
         (lambda: theory.saturation_vapor_pressure(700.0), "critical"),
-        (lambda: theory.saturation_vapor_pressure_iapws([280.0, 700.0]), "critical"),
         (lambda: theory.saturation_vapor_pressure_iapws(230.0), "233.15 K"),
         (lambda: theory.dewpoint(-1.0), "vapor_pressure"),
-        (lambda: theory.dewpoint(1e9), "critical"),
         (lambda: theory.mixing_ratio(2e4, 2e4), "no air"),
-        (lambda: theory.saturation_mixing_ratio(2000.0, 293.15), "boils"),
         (lambda: theory.vapor_pressure(1e5, -0.1), "mixing_ratio"),
-        (lambda: theory.virtual_temperature(0.0, 0.01), "temperature"),
-        (lambda: theory.moist_air_poisson_exponent(-0.01), "mixing_ratio"),
         (lambda: theory.lcl(1e5, 290.0, 290.1), "supersaturated"),
         (lambda: theory.lcl(2000.0, 295.0, 293.15), "boils"),
         (lambda: theory.parcel_path([9e4, np.nan], 1e5, 290.0, 0.01), "pressure"),
-        (lambda: theory.parcel_path([9e4], 1e5, 0.0, 0.01), "temperature0"),
-        (lambda: theory.parcel_path([9e4], 1e5, 290.0, -0.01), "total_water"),
         (lambda: theory.parcel_path([9e4], 1e5, 290.0, 0.01, np.nan), "most_liquid"),
         (lambda: theory.parcel_path([5e4, 1e4], 1e5, 300.0, 6.0, 5.9), "evaporates"),
     ]
