@@ -88,7 +88,7 @@ def test_a_change_of_gravity_is_in_the_energy_budget_and_moves_no_molecule(engin
     assert gas.gravity == 0.05
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", [pytest.param(ParcelSet, marks=pytest.mark.nightly), *ENGINES[1:]])
 def test_without_collisions_molecules_meet_walls_alone(engine):
     gas = box(engine, collisions=False)
     gas.advance(20.0)

@@ -61,7 +61,9 @@ BOXES = {
     ),
     "lift": lambda: ParcelSet(*gas(), **lifted()),
     "mist": lambda: MoistParcelSet(*gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()),
-    "pool": lambda: MoistParcelSet(*gas(), length=(12.0,) * 3, liquid=Pool(WATER, number=40, kT=1.0)),
+    "pool": lambda: MoistParcelSet(
+        *gas(), mass=[1.0, 0.62] * 32, liquid=Pool(WATER, number=40, kT=1.0), **lifted()
+    ),
     "drops": lambda: DropParcelSet(
         *gas(60), length=(12.0,) * 3, mass=[0.62, 1.0] * 30, rotation=[3.0, 2.0] * 30,
         liquid=Drops(

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine import HeatBath, Specular
+from atmosbox.engine import HeatBath, Periodic, Piston
 from atmosbox.engine.core.measure import layer_sample
 from atmosbox.scene.statistics import block_average
 
-S = Specular()
+P = Periodic()
 
 
 def profile(box, edges, step, samples, warm_up):
@@ -41,8 +41,8 @@ def profile(box, edges, step, samples, warm_up):
 def test_an_ideal_column_thins_out_as_the_barometric_law_says(gas, depth):
     number, gravity, kT = 1000, 0.5, 1.0
     height = depth * kT / gravity
-    walls = (S, S, S, S, HeatBath(kT), HeatBath(kT))
-    box = gas(number, (5.0, 5.0, height), walls=walls, diameter=0.0, gravity=gravity, seed=41)
+    walls = (P, P, P, P, HeatBath(kT), HeatBath(kT))
+    box = gas(number, (5.0, 5.0, height), walls=walls, diameter=1e-3, gravity=gravity, seed=41)
     edges = np.linspace(0.0, height, 11)
     density, warmth, mean_height = profile(box, edges, 3.0, 2000, 200.0)
     truth = theory.hydrostatic_layers(edges, number / 25.0, 0.0, height, kT, 1.0, gravity)
@@ -60,8 +60,8 @@ def test_an_ideal_column_thins_out_as_the_barometric_law_says(gas, depth):
 def test_heavy_molecules_sink_each_by_its_own_scale_height(gas):
     number, gravity, kT, height = 1000, 0.25, 1.0, 12.0
     mass = np.where(np.arange(number) < number // 2, 1.0, 4.0)
-    walls = (S, S, S, S, HeatBath(kT), HeatBath(kT))
-    box = gas(number, (6.0, 6.0, height), walls=walls, diameter=0.0, mass=mass, gravity=gravity, seed=44)
+    facts = {"walls": (P, P, P, P, HeatBath(kT), Piston()), "diameter": 1e-3, "mass": mass, "rotation": 2.0}
+    box = gas(number, (6.0, 6.0, height), gravity=gravity, seed=44, **facts)
     box.advance(300.0)
     rows = []
     for _ in range(1000):

@@ -22,12 +22,10 @@ def test_energy_is_kept_to_rounding_with_gravity_and_walls(gas, contacts):
     assert box.wall_hits.min() > 100
 
 
-@pytest.mark.parametrize("gravity", [0.0, 0.05])
-def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
-    # with gravity there are two kinds of molecules: for both, other tests have the kernels
-    mass = [1.0, 1.5] * 150 if gravity else 1.0
+def test_the_energy_budget_closes_with_heat_baths_a_piston_and_rotation(gas):
+    mass = [1.0, 1.5] * 150
     walls = (HeatBath(1.5), HeatBath(0.7), P, P, HeatBath(1.0, 0.5), Piston())
-    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=gravity, diameter=0.8, mass=mass, seed=2)
+    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=0.05, diameter=0.8, mass=mass, seed=2)
     exchanged = 0.0
     for stroke in range(20):
         box.set_piston_velocity(-0.1 if stroke % 2 else 0.1)

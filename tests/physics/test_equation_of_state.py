@@ -123,6 +123,7 @@ def test_the_virial_of_contacts_and_the_impulses_on_walls_are_one_pressure(gas, 
     assert abs(surplus) <= allowed * energy * box.time
 
 
+@pytest.mark.nightly  # numba has other kernels for arrays of one
 @pytest.mark.parametrize("diameter", [0.0, 1.0])
 def test_a_molecule_alone_presses_by_the_room_that_its_centre_has(gas, diameter):
     # N molecules that never meet press with N kT / (A (L - sigma)): here N = 1, exact but for one more or one less hit

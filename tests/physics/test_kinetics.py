@@ -97,7 +97,9 @@ MIXTURES = {
 }
 
 
-@pytest.mark.parametrize("name", MIXTURES)
+@pytest.mark.parametrize(
+    "name", ["two masses", "two sizes", pytest.param("few heavy giants", marks=pytest.mark.nightly)]
+)
 def test_a_mixture_meets_as_often_as_theory_says(gas, name):
     mixture, number = MIXTURES[name], 500
     second = np.arange(number) < mixture["share"] * number

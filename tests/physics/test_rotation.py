@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from atmosbox.engine import Periodic, Piston, Specular
 from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from tests.physics.conftest import EVERYTHING
 
 
 def shares(box, warm_up, step, samples):
@@ -38,6 +40,7 @@ def test_motion_and_rotation_share_the_energy_by_their_degrees_of_freedom(gas, r
     box = gas(
         400, (40.0, 1.0, 40.0) if planar else (12.0,) * 3, kT=(flies + rotation) / flies, spin_kT=0.0, planar=planar,
         rotation=rotation, collision_number=collision_number, seed=61,
+        **EVERYTHING | ({"walls": (Periodic(),) * 2 + (Specular(),) * 3 + (Piston(),)} if planar else {}),
     )  # fmt: skip
     assert box.degrees_of_freedom == flies + rotation
     assert box.energy()[1] == 0.0
@@ -53,7 +56,7 @@ def test_motion_and_rotation_share_the_energy_by_their_degrees_of_freedom(gas, r
 @pytest.mark.parametrize(("rotation", "shape"), [(2, 1.0), (3, 1.5)])
 def test_rotational_energies_are_those_of_a_heat_bath_and_speeds_maxwells(gas, rotation, shape):
     number = 1000
-    box = gas(number, (16.0,) * 3, kT=(3.0 + rotation) / 3.0, spin_kT=0.0, rotation=rotation, seed=62)
+    box = gas(number, (16.0,) * 3, kT=(3.0 + rotation) / 3.0, spin_kT=0.0, rotation=rotation, seed=62, **EVERYTHING)
     box.advance(30.0)
     spin, speed = [], []
     for _ in range(20):
@@ -77,7 +80,7 @@ def test_rotation_warms_at_the_rate_that_the_collision_number_sets(gas, collisio
     number, runs, length = 2000, 20, (25.0,) * 3
     gained = []
     for seed in range(runs):
-        box = gas(number, length, spin_kT=0.0, rotation=2, collision_number=collision_number, seed=seed)
+        box = gas(number, length, spin_kT=0.0, rotation=2, collision_number=collision_number, seed=seed, **EVERYTHING)
         while box.contacts < 60:
             box.advance(box.time + 0.01)
         # so few that hardly any molecule has collided twice
@@ -93,7 +96,7 @@ def test_rotating_and_plain_molecules_come_to_one_temperature(gas):
     number = 400
     rotation = np.where(np.arange(number) < number // 2, 0.0, 2.0)
     mass = np.where(np.arange(number) < number // 2, 1.0, 7.0)
-    box = gas(number, (13.0,) * 3, kT=4.0 / 3.0, spin_kT=0.0, rotation=rotation, mass=mass, seed=64)
+    box = gas(number, (13.0,) * 3, kT=4.0 / 3.0, spin_kT=0.0, rotation=rotation, mass=mass, seed=64, **EVERYTHING)
     assert box.degrees_of_freedom == 4.0
     box.advance(200.0)
     rows = []

@@ -26,8 +26,8 @@ THINNEST = 0.01
 """Density of attracting molecules below which more than a million molecules of air would be needed in the box."""
 BUSY = {("diffusion", "length"), ("diffusion", "pressure"), ("diffusion", "diameter")}
 """Settings whose highest values need minutes, since each molecule has hundreds of collisions before the gases mix."""
-OWN_KERNELS = {("condensation", "drops")}
-"""Settings whose highest values need kernels that no other test needs; the scene nuclei tests drops too."""
+OWN_KERNELS = {("condensation", "drops"), ("lifting-dry", "rotation")}
+"""Settings whose other values need kernels that no other test needs; the scene nuclei tests drops too."""
 SCENES = scenarios.names()
 FRAMES = {
     "atmosphere": (60, 12),
