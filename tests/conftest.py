@@ -73,6 +73,11 @@ def pytest_collection_finish(session):
 
 
 def pytest_sessionfinish(session):
+    others = unlisted(session.config)
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["modes"] = sorted(_used)
+    elif others and session.exitstatus == 0:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
     report = session.config.getoption("--soak-report")
     if report and "tests.fuzz_case" in sys.modules:
         said = {"fuzz": dict(sys.modules["tests.fuzz_case"].CASES), "cpu_seconds": round(time.process_time(), 1)}
@@ -86,6 +91,67 @@ def pytest_xdist_make_scheduler(config, log):
     from xdist.scheduler import LoadFileScheduling
 
     return LoadFileScheduling(config, log) if config.getoption("dist") == "load" else None
+
+
+MODES = {
+    "contacts rows": "equal molecules between walls, and in a plane: the scene temperature",
+    "contacts mixed rows": "molecules of several kinds: elastic-collisions",
+    "contacts periodic rows": "a periodic box: diffusion",
+    "contacts mixed periodic rows": "unlike gases: diffusion",
+    "contacts gravity rows": "gravity between walls: convection",
+    "contacts gravity periodic rows": "a column: atmosphere",
+    "contacts rotation piston ascends rows": "air that rises: lifting-dry",
+    "contacts rotation mixed phases rows": "a mist: condensation",
+    "contacts rotation mixed piston phases ascends rows": "a cloud that rises: lifting-moist, mountains",
+    "contacts rotation mixed piston phases pool ascends rows": "a pool under a piston: evaporation",
+    "contacts rotation mixed phases drops=2 rows": "drops: nuclei",
+    "contacts gravity piston rows": "a piston that a driver moves",
+    "contacts gravity rotation mixed periodic piston rows": "all features that go together",
+    "contacts rotation mixed spanning periodic images": "spheres larger than cells, in a box that is hardly larger",
+}
+"""The sets of modes of the exact engine whose kernels unmarked tests compile; each takes five to twenty seconds.
+
+A test of another box uses one of these (gravity so weak, or masses so close, that nothing changes), or is marked
+nightly. The session fails if it used others.
+"""
+_kernels, _used = {}, set()
+
+
+def pytest_sessionstart(session):
+    """Note the kernels of every set of modes."""
+    from atmosbox.engine.exact import parcelset
+    from atmosbox.engine.liquid import drop, moist
+
+    def noting(specialise):
+        def kernels(modes):
+            made = specialise(modes)
+            flags = (name if value is True else f"{name}={value}" for name, value in modes._asdict().items() if value)
+            _kernels[specialise, " ".join(flags)] = made[1]
+            return made
+
+        return kernels
+
+    for module in (parcelset, moist, drop):
+        module.specialise = noting(module.specialise)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node, error):
+    """Collect what a worker has used."""
+    _used.update(getattr(node, "workeroutput", {}).get("modes", ()))
+
+
+def unlisted(config):
+    """Return the sets of modes that were used by unmarked tests alone and are not in the table."""
+    _used.update(name for (_, name), kernel in _kernels.items() if getattr(kernel, "signatures", ()))
+    asked = config.getoption("-m") or config.getoption("--nightly") or any("::" in each for each in config.args)
+    return [] if asked else sorted(_used - set(MODES))
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    """Name what has to be listed, or marked nightly."""
+    for name in unlisted(config):
+        terminalreporter.write_line(f"ERROR: a set of modes that tests/conftest.py does not list: {name or 'points'}")
 
 
 BROWSER_FLAGS = [

@@ -3,7 +3,6 @@
 import inspect
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -87,37 +86,6 @@ def test_a_file_that_appears_during_the_run_is_not_overwritten(tmp_path):
         checkpoint.finish(run_so_far(5))
     assert (tmp_path / "run.nc").read_text() == "another's"
     assert frames_in(checkpoint.part) == 5
-
-
-def test_a_run_killed_while_it_writes_leaves_the_frames_before(tmp_path):
-    code = """
-checkpoint = Checkpoint(sys.argv[1], every_seconds=0.0)
-for frames in (3, 4):
-    checkpoint.save(run_so_far(frames))
-
-def hang(_file):
-    print("writing", flush=True)
-    time.sleep(60)
-
-os.fsync = hang
-checkpoint.save(run_so_far(5))
-"""
-    path = tmp_path / "run.nc"
-    with child(code, path) as process:
-        assert process.stdout.readline() == "writing\n"
-        process.send_signal(signal.SIGKILL)
-    assert process.returncode == -signal.SIGKILL
-    found = read(tmp_path / "run.part.nc")
-    assert found.sizes["elapsed_time"] == 4
-    assert found.attrs["atmosbox_status"] == "partial"
-    with pytest.raises(FileError, match=r"run\.nc does not exist: a run that was stopped left .*run\.part\.nc"):
-        read(path)
-
-    assert len(list(tmp_path.glob(".*"))) == 2  # half a file, and the lock of a process that has ended
-    checkpoint = Checkpoint(path).begin()
-    assert not list(tmp_path.glob(".*.tmp"))
-    checkpoint.finish(run_so_far(3))
-    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
 
 
 def test_two_runs_cannot_write_one_file(tmp_path):

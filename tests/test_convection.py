@@ -2,14 +2,13 @@
 
 import functools
 import math
-import re
 
 import numpy as np
 import pytest
 from scipy import stats
 from scipy.optimize import brentq
 
-from atmosbox import plot, theory
+from atmosbox import theory
 from atmosbox.errors import AtmosboxError
 from atmosbox.scene.statistics import growth_per_step
 from atmosbox.simulation import runner
@@ -158,11 +157,6 @@ def test_the_errors_of_lapse_rate_and_heat_in_stable_air_are_the_scatter_of_sixt
         assert stats.chi2.ppf(0.0005, 59) < 59 * scatter / stated < stats.chi2.ppf(0.9995, 59), name
 
 
-def test_an_accuracy_is_refused_with_its_reason():
-    with pytest.raises(AtmosboxError, match="theory knows only the weight of the air"):
-        runner.prepare("convection", {}, accuracy="sketch")
-
-
 def test_below_an_inversion_little_of_the_smoke_rises():
     inversion, open_air = ran(case="inversion", molecules=2000), ran(**TURNS)
     smoke, mixed = (number(outcome, "share_from_the_floor") for outcome in (inversion, open_air))
@@ -213,14 +207,3 @@ def test_what_is_extreme_is_right_or_refused_in_a_sentence(settings, engine, ref
     assert np.isfinite(data.layer_temperature_adiabatic.values).all()
     pressure = data.air_pressure.values.mean()
     assert 0.3 * 1013.25e2 < pressure < 3.0 * 1013.25e2
-
-
-@pytest.mark.parametrize(("width", "theme"), [(0.5, "notes"), (1.5, "slides"), (10.0, "notes")])
-def test_the_figure_shows_the_air_at_the_start_and_at_the_end_above_its_panels(width, theme):
-    drawing = plot.figure(ran(molecules=300, duration=30.0, width=width).dataset, theme)
-    titles = [axes.get_title("left") for axes in drawing.axes]
-    assert "Start: no wind" in titles
-    assert sum(bool(re.search(r" [\d.]+ to [\d.]+ min", axes.get_xlabel())) for axes in drawing.axes) == 2
-    edges = [axes.get_position() for axes in drawing.axes]
-    assert all(0.0 <= each.x0 <= each.x1 <= 1.0 and 0.0 <= each.y0 <= each.y1 <= 1.0 for each in edges)
-    assert plot.figure(ran(molecules=300, duration=30.0, width=width).dataset.drop_vars("upward_wind"), theme)

@@ -8,9 +8,6 @@ import pytest
 from atmosbox.errors import EngineError
 from atmosbox.file.dataset import dataset, headline_variables
 from atmosbox.file.netcdf import read, write
-from atmosbox.scene.instruments import Layers
-from atmosbox.scene.units import Scale
-from atmosbox.theory.constants import BOLTZMANN
 
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 
@@ -35,31 +32,10 @@ def headline(name="lapse_rate", value=9.7e-3, **fields):
     return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
 
 
-def test_a_variable_that_is_not_declared_is_refused():
-    with pytest.raises(KeyError, match="air_temprature"):
-        dataset({"air_temprature": [1.0, 2.0, 3.0]}, TIMES, {})
-
-
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_a_ledger_that_is_not_finite_stops_the_run(value):
     with pytest.raises(EngineError, match=r"kinetic_energy is not finite at \[1\]"):
         dataset({"kinetic_energy": [1.0, value, 2.0]}, TIMES, {})
-
-
-def test_a_measurement_of_nothing_is_nan_and_has_a_fill_value():
-    run = dataset({"air_temperature": [300.0, np.nan, 301.0]}, TIMES, {})
-    assert np.isnan(run.air_temperature.values[1])
-    assert np.isnan(run.air_temperature.encoding["_FillValue"])
-
-
-def test_coordinates_bounds_and_ledgers_have_no_fill_value():
-    coords = TIMES | {"elapsed_time_bnds": [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]}
-    run = dataset({"kinetic_energy": [1.0, 2.0, 3.0], "collision_count": [0, 1, 2]}, coords, {})
-    for name in ("elapsed_time", "elapsed_time_bnds", "kinetic_energy", "collision_count"):
-        assert run[name].encoding["_FillValue"] is None
-    assert run.elapsed_time.attrs["bounds"] == "elapsed_time_bnds"
-    assert run.elapsed_time_bnds.attrs == {}
-    assert "elapsed_time_bnds" not in run.coords
 
 
 def test_what_is_measured_on_the_way_can_be_drawn_along_the_pressure_and_the_height_of_the_parcel(tmp_path):
@@ -89,21 +65,3 @@ def test_a_headline_becomes_four_numbers_in_si():
     assert held["lapse_rate"].attrs["display_units"] == "K km-1"
     assert held["lapse_rate"].attrs["comment"] == "a finite rise"
     assert held["lapse_rate"].attrs["units_metadata"] == "temperature: difference"
-
-
-def test_a_temperature_of_two_molecules_seen_once_is_hardly_known():
-    rng, layers = np.random.default_rng(3), Layers(2)
-    parcel = SimpleNamespace(
-        length=np.full(3, 4.0), mass=np.ones(40), planar=False, volume=64.0, virial=np.zeros(2), energy=lambda: (60.0,)
-    )
-    for frame in range(50):
-        height = np.ones(40)
-        height[:2] = 3.0 if frame == 30 else 1.0
-        place = np.stack([height] * 3, axis=1)
-        parcel.time = frame + 1.0
-        layers.sample(parcel, SimpleNamespace(position=place, velocity=rng.normal(size=(40, 3))))
-        layers.end_frame(parcel, None)
-    found = layers.readings(Scale(1.0, 1.0, BOLTZMANN), settle=0)
-    low, high = found["layer_temperature_se"] / found["layer_temperature"]
-    assert low == pytest.approx(np.sqrt(2.0 / (3 * 39 * 50)), rel=0.5)
-    assert high > 0.8

@@ -248,8 +248,7 @@ def test_every_scene_has_a_case():
 
 
 @pytest.mark.parametrize(
-    "case",
-    [pytest.param(case, id=named(case), marks=pytest.mark.nightly if case.long else ()) for case in CASES],
+    "case", [pytest.param(case, id=named(case), marks=pytest.mark.nightly if case.long else ()) for case in CASES]
 )
 def test_the_errors_of_a_small_box_are_its_scatter(case, seen, request):
     if not case.long:

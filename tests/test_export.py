@@ -34,11 +34,6 @@ def cloud():
     return ab.run("condensation", molecules=200, duration="2 ns", save_molecules=True)
 
 
-@pytest.fixture(scope="module")
-def column():
-    return ab.run("atmosphere", molecules=60, duration=5, save_molecules=True)
-
-
 def with_ase(content):
     import ase.io
 
@@ -65,13 +60,6 @@ def test_a_molecule_in_the_liquid_is_left_out_and_keeps_its_number(cloud):
     for frame, there in zip(frames, present, strict=True):
         assert frame.arrays["id"].tolist() == (np.flatnonzero(there) + 1).tolist()
         assert [symbol == "O" for symbol in frame.symbols] == (cloud.species.values[there] == 1).tolist()
-
-
-def test_a_column_of_kilometres_is_in_si_and_says_so(column):
-    frame = with_ase(extended_xyz(column))[-1]
-    np.testing.assert_allclose(frame.positions, column.molecule_position[-1], rtol=1e-6)
-    assert frame.info["units"] == "m m/s kg"
-    assert frame.pbc.tolist() == [law == 1 for law in column.wall_law.values[::2]]
 
 
 def test_a_spreadsheet_has_the_same_numbers_under_their_units(box):
@@ -111,12 +99,3 @@ def test_a_run_without_molecules_or_velocities_says_what_to_do(box):
         extended_xyz(bare)
     with pytest.raises(FileError, match="speeds and no velocities"):
         extended_xyz(box.drop_vars("molecule_velocity"))
-
-
-def test_cf_xarray_finds_one_variable_for_a_standard_name(tmp_path):
-    import cf_xarray  # noqa: F401
-
-    for scene in ("lifting-dry", "atmosphere"):
-        run = ab.run(scene, molecules=60, **({"duration": 5} if scene == "atmosphere" else {}))
-        assert run.cf["air_temperature"].name == "air_temperature"
-        assert run.cf["air_pressure"].name == "air_pressure"

@@ -5,7 +5,6 @@ Tests that take long, or must run as root, are in the tier ``soak``.
 
 import contextlib
 import ctypes
-import json
 import os
 import random
 import shutil
@@ -85,8 +84,7 @@ TURKISH = "tr_TR.UTF-8"
     [
         (["-W", "error"], {"LC_ALL": TURKISH, "LANG": TURKISH, "TERM": None, "TZ": "Pacific/Kiritimati"}),
         ([], {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NOBODY),
-        # it translates all libraries anew; test_house looks at what is left out
-        pytest.param(["-O"], {}, marks=pytest.mark.nightly),
+        pytest.param(["-O"], {}, marks=pytest.mark.nightly),  # it translates all libraries again
     ],
     ids=["-W error, Turkish, far zone", "C, no home", "-O"],
 )
@@ -94,40 +92,6 @@ def test_an_odd_environment_changes_no_number(usual, tmp_path, flags, variables)
     status, _, said = command(SHORT, tmp_path, *flags, **variables)
     assert status == 0, said
     assert same(tmp_path, usual)
-
-
-@pytest.mark.parametrize("tongue", ["de_DE.UTF-8", "tr_TR.UTF-8"])
-def test_numbers_are_written_and_read_with_a_point_in_every_language(usual, tmp_path, tongue):
-    """Also if the program that calls atmosbox has set the locale, as a desktop does."""
-    script = """
-import json, locale, sys
-try:
-    locale.setlocale(locale.LC_ALL, sys.argv[1])
-except locale.Error:
-    sys.exit(77)
-from atmosbox.cli import app
-for words in json.loads(sys.argv[2]):
-    app(words, standalone_mode=False)
-"""
-    shutil.copy(usual / "x.nc", tmp_path)
-    commands = [["export", "x.nc", "--format", "csv", "--out", "y.csv"], ["info", "temperature", "--json"],
-                ["run", SCENE, "--set", "duration=1.5s", "--dry-run", "--json"]]  # fmt: skip
-    done = subprocess.run(
-        [sys.executable, "-c", script, tongue, json.dumps(commands)], cwd=tmp_path, capture_output=True, text=True,
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, encoding="utf-8", check=False,
-    )  # fmt: skip
-    if done.returncode == 77:
-        pytest.skip(f"the locale {tongue} is not here: localedef -i {tongue[:5]} -f UTF-8 {tongue}")
-    assert done.returncode == 0, done.stderr
-    card, end = json.JSONDecoder().raw_decode(said := done.stdout[done.stdout.index("{") :])
-    assert card["parameters"]
-    assert json.loads(said[end:])["settings"]["duration"] == 1.5
-    rows = [path.read_text(encoding="utf-8") for path in sorted(tmp_path.glob("y*.csv"))]
-    assert any("0.1" in text for text in rows)
-    widths = {line.count(",") for text in rows for line in text.splitlines()[:1]}
-    assert widths != {0}
-    for text in rows:
-        assert len({line.count(",") for line in text.splitlines() if '"' not in line}) == 1
 
 
 # Clocks
@@ -233,33 +197,3 @@ def test_a_folder_that_nothing_may_be_written_to_is_refused_and_a_cache_there_is
 
 
 # Caches
-
-
-@pytest.mark.soak
-def test_a_cache_of_which_every_file_is_damaged_is_made_anew(usual, tmp_path):
-    home = tmp_path / "cache"
-    home.mkdir(mode=0o700)
-    assert command(SHORT, tmp_path / "first", NUMBA_CACHE_DIR=str(home))[0] == 0
-    draw = random.Random(5)
-    for path in (path for path in home.rglob("*") if path.is_file()):
-        content = path.read_bytes()
-        bit = draw.randrange(max(len(content), 1))
-        flipped = bytes([content[bit] ^ 1]) if content else b""
-        others = [b"", content[: len(content) // 2], content[:-1], content[:bit] + flipped + content[bit + 1 :]]
-        path.write_bytes(draw.choice(others))
-    for name in ("second", "third"):
-        status, _, said = command(SHORT, tmp_path / name, NUMBA_CACHE_DIR=str(home))
-        assert status == 0, said
-        assert same(tmp_path / name, usual)
-
-
-@pytest.mark.soak
-def test_runs_that_fill_one_empty_cache_at_once_find_the_same(usual, tmp_path):
-    home = tmp_path / "cache"
-    folders = [tmp_path / f"run {k}" for k in range(3)]
-    running = [started(SHORT, folder, NUMBA_CACHE_DIR=str(home)) for folder in folders]
-    for process, folder in zip(running, folders, strict=True):
-        _, said = process.communicate()
-        assert process.returncode == 0, said
-        assert same(folder, usual)
-    assert not list(home.rglob("*.tmp*"))

@@ -1,7 +1,6 @@
 """Whatever is in a netCDF file, the result is its content or one sentence, and never a traceback."""
 
 import contextlib
-import json
 import random
 import shutil
 from pathlib import Path
@@ -54,24 +53,15 @@ def files(tmp_path_factory):
 
 
 def other_bytes(path, draw):
-    """Change some bytes of a file, cut it, or move a piece of it to another place."""
+    """Change some bytes of a file, cut it, or change its first blocks, which are HDF5's tables of addresses."""
     content = bytearray(path.read_bytes())
-    kind = draw.randrange(5)
-    start = draw.randrange(len(content))
+    kind = draw.randrange(3)
     if kind == 0:
-        for _ in range(draw.randrange(1, 20)):
-            content[draw.randrange(len(content))] = draw.randrange(256)
-    elif kind == 1:
-        del content[start:]
-    elif kind == 2:
-        content[start : start + draw.randrange(1, 200)] = bytes(draw.randrange(1, 200))
-    elif kind == 3:
-        piece = content[start : start + draw.randrange(1, 500)]
-        place = draw.randrange(len(content))
-        content[place : place + len(piece)] = piece
+        del content[draw.randrange(len(content)) :]
     else:
-        for _ in range(draw.randrange(1, 4)):  # the first blocks are HDF5's tables of addresses
-            content[draw.randrange(min(4096, len(content)))] = draw.choice([0, 255, draw.randrange(256)])
+        end = min(4096, len(content)) if kind == 1 else len(content)
+        for _ in range(draw.randrange(1, 20)):
+            content[draw.randrange(end)] = draw.choice([0, 255, draw.randrange(256)])
     path.write_bytes(content)
 
 
@@ -82,17 +72,12 @@ def other_content(path, draw):
         for _ in range(draw.randrange(2, 5)):  # some of these change nothing
             owner = draw.choice([file, *file.variables.values()])
             names = owner.ncattrs()
-            kind = draw.randrange(6)
+            kind = draw.randrange(4)
             if kind == 0 and names:
                 owner.delncattr(draw.choice(names))
             elif kind == 1 and names:
                 owner.setncattr(draw.choice(names), draw.choice([*ODD_TEXTS, *ODD_NUMBERS]))
-            elif kind == 2:
-                told = [name for name in file.ncattrs() if str(file.getncattr(name)).startswith(("{", "["))]
-                if told:
-                    name = draw.choice(told)
-                    file.setncattr(name, json.dumps(other_json(json.loads(file.getncattr(name)), draw)))
-            elif kind == 3 and owner is not file and owner.size and owner.dtype.kind in "fiu":
+            elif kind == 2 and owner is not file and owner.size and owner.dtype.kind in "fiu":
                 values = np.array(owner[...], dtype=owner.dtype)
                 with np.errstate(all="ignore"):
                     odd = np.asarray(draw.choice(ODD_NUMBERS), float)
@@ -100,22 +85,9 @@ def other_content(path, draw):
                         odd if owner.dtype.kind == "f" else int(np.nan_to_num(odd)) % 127
                     )
                 owner[...] = values
-            elif kind == 4 and owner is not file:
-                file.renameVariable(owner.name, f"other_{owner.name}")
-            elif kind == 5:
+            elif kind == 3:
                 name = draw.choice(sorted(file.dimensions))
                 file.renameDimension(name, f"other_{name}")
-
-
-def other_json(held, draw):
-    """Return a JSON text with one value in it changed."""
-    if isinstance(held, dict) and held and draw.random() < 0.8:
-        name = draw.choice(sorted(held))
-        return {**held, name: other_json(held[name], draw)}
-    if isinstance(held, list) and held and draw.random() < 0.8:
-        k = draw.randrange(len(held))
-        return [*held[:k], other_json(held[k], draw), *held[k + 1 :]]
-    return draw.choice([None, True, [], {}, -1, 1e300, *ODD_TEXTS[:4], *ODD_TEXTS[6:]])
 
 
 def damaged(files, draw):
@@ -139,13 +111,6 @@ def tried(files, seed):
         for path in Path.cwd().iterdir():
             if path.is_file() and path not in files:
                 path.unlink()
-
-
-def test_nearly_all_cases_change_their_file(files):
-    draw = random.Random(1)
-    changed = [good.read_bytes() != odd.read_bytes() for good, odd in (damaged(files, draw) for _ in range(100))]
-    files[0].with_name("odd.nc").unlink()
-    assert sum(changed) >= 95
 
 
 def test_other_programs_can_append_to_every_kind_of_file(files):

@@ -1,7 +1,6 @@
 """The functions that scripts and notebooks call: `atmosbox.run` and the others."""
 
 import importlib.util
-import subprocess
 import sys
 from pathlib import Path
 
@@ -61,22 +60,12 @@ def test_a_saved_run_is_opened_as_it_was_and_replaced_only_by_force(tmp_path):
     assert ab.run(SCENE, duration="2 s", seed=2, out=path, force=True).identical(ab.open(path))
 
 
-def test_the_figure_of_a_run_is_drawn_from_the_dataset_and_from_its_file(tmp_path, lifted):
-    file = tmp_path / "lifted.nc"
-    ab.run("lifting-dry", molecules=200, out=file)
-    one, other = ab.plot(lifted), ab.plot(file, out=tmp_path / "lifted.svg")
-    picture = one._repr_png_()
-    assert picture[1:4] == b"PNG"
-    assert picture[1000:] == other._repr_png_()[1000:]
-    assert (tmp_path / "lifted.svg").exists()
-
-
 def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
     warm = ab.run("lifting-dry", molecules=200, temperature="30 degC")
     both = ab.compare(lifted, warm)
     assert repr(both).splitlines()[0] == "lifting-dry: temperature 15 degC / 30 degC"
     assert any(line.startswith("temperature at 300 hPa") for line in repr(both).splitlines())
-    assert {"<pre", "<img alt="} <= {word for word in ("<pre", "<img alt=") if word in both._repr_html_()}
+    assert "<pre" in both._repr_html_()
     assert both.figure.axes
 
 
@@ -91,14 +80,6 @@ def test_a_sweep_takes_lists_and_words(tmp_path):
 
 
 # Pages and bars
-
-
-def test_the_page_of_a_run_opens_in_the_browser_where_there_is_no_notebook(monkeypatch, boxed):
-    opened = []
-    monkeypatch.setattr(inline_page.webbrowser, "open", opened.append)
-    page = ab.show(boxed)
-    (address,) = opened
-    assert Path(address.removeprefix("file://")).read_text(encoding="utf-8") == page.text
 
 
 def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
@@ -141,11 +122,6 @@ def test_a_refusal_says_what_to_write_in_python():
         assert "--" not in str(refused.value)
 
 
-def test_a_run_without_molecules_says_how_to_keep_them():
-    with pytest.raises(errors.FileError, match=r'type atmosbox\.run\("lifting-dry", save_molecules=True\)\.$'):
-        ab.show(ab.run("lifting-dry", molecules=50, save_molecules=False))
-
-
 # The stub for editors
 
 
@@ -160,13 +136,3 @@ def test_what_an_editor_knows_is_what_the_scenes_say():
     assert (ROOT / "atmosbox" / "__init__.pyi").read_text(encoding="utf-8") == made.stub(), (
         "the settings of a scene have changed: run python tools/stub.py"
     )
-
-
-def test_importing_atmosbox_takes_no_time():
-    """Both are measured as processor time, so a busy machine does not matter, without the time of Python itself."""
-    code = "import time; began = time.process_time(); import atmosbox; print(time.process_time() - began)"
-    spent = min(
-        float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout)
-        for _ in range(3)
-    )
-    assert spent < 0.1

@@ -1,10 +1,8 @@
 """Files: complete or absent, according to CF, and read again as they were written."""
 
-import ast
 import errno
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -18,7 +16,7 @@ import xarray as xr
 from atmosbox import film, page, plot, sheet
 from atmosbox.errors import DiskFullError, FileError
 from atmosbox.file import netcdf as output
-from atmosbox.file import output_path, provenance, validity
+from atmosbox.file import provenance, validity
 from atmosbox.file.dataset import VARIABLES, dataset
 from atmosbox.file.output_path import check_writable, clear, whole_file
 from atmosbox.scene.headline import Headline
@@ -206,10 +204,7 @@ def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, forc
         ("/dev/null", "is a device"),
         ("", "name of the file is empty"),
     ]:
-        for attempt in (
-            check_writable,
-            lambda path, force: output.write(lifting(), path, force=force),
-        ):
+        for attempt in (check_writable, lambda path, force: output.write(lifting(), path, force=force)):
             with pytest.raises(FileError, match=words) as refusal:
                 attempt(place, force=force)
             assert str(refusal.value).endswith(".")
@@ -259,33 +254,11 @@ def test_whatever_a_file_is_made_of_it_is_there_whole_or_not_at_all(tmp_path):
     assert [each.name for each in tmp_path.iterdir()] == ["film.mp4"]
 
 
-WRITES = re.compile(r"^os\.replace$|\.(write_bytes|write_text|to_netcdf)$")
-
-
-def test_nothing_in_the_package_puts_a_file_in_its_place_on_its_own():
-    """A second way to write a file whole would be one that forgets something; what only caches keep may be lost."""
-    package = Path(output_path.__file__).parents[1]
-    ways = {
-        path.relative_to(package).as_posix()
-        for path in package.rglob("*.py")
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Call) and WRITES.search(ast.unparse(node.func))
-    }
-    caches = {"engine/core/kernel_cache.py", "simulation/compilation.py", "simulation/expected_time.py"}
-    netcdf = "file/netcdf.py"  # it takes the room on the disk for the temporary file of output_path
-    assert ways - caches == {"file/output_path.py", "file/checkpoint.py", netcdf}
-
-
 # Files that may be read
 
 
 def foreign(path):
     xr.Dataset({"t": ("time", [1.0, 2.0], {"units": "days since 0000-00-00"})}).to_netcdf(path, engine="netcdf4")
-
-
-def classic(path):
-    with netCDF4.Dataset(path, "w", format="NETCDF3_CLASSIC") as file:
-        file.title = "another program's"
 
 
 def with_attributes(**changed):
@@ -297,21 +270,10 @@ def truncated(path):
     path.write_bytes(whole[: len(whole) // 2])
 
 
-def turned(path):
-    run = everything()
-    turned = run.molecule_position.transpose("molecule", "elapsed_time", "axis")
-    output.write(run.assign(molecule_position=turned), path)
-
-
 def unitless(path):
     output.write(lifting(), path)
     with netCDF4.Dataset(path, "r+") as file:
         file["elapsed_time"].delncattr("units")
-
-
-def worded(path):
-    run = lifting()
-    output.write(run.assign(air_temperature=("elapsed_time", ["warm"] * run.sizes["elapsed_time"])), path)
 
 
 def boundless(path):
@@ -322,13 +284,6 @@ def boundless(path):
         file.createVariable("air_density", "f8", ("many",), chunksizes=(1000,))
 
 
-def deserted(path):
-    with netCDF4.Dataset(path, "w") as file:
-        file.setncatts(attributes())
-        file.createDimension("molecule", None)
-        file.createVariable("molecule_mass", "f8", ("molecule",))
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -336,24 +291,17 @@ def deserted(path):
         (lambda path: path.mkdir(), "is a folder"),
         (lambda path: path.touch(), "is empty"),
         (lambda path: path.write_text("temperature, pressure\n"), "is no netCDF file, or a damaged one"),
-        (
-            lambda path: path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500)),
-            "is no netCDF file, or a damaged one",
-        ),
+        (lambda path: path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500)), "is no netCDF file, or a damaged one"),
         (truncated, "is no netCDF file, or a damaged one"),
         (foreign, "was written by another program"),
-        (classic, "was written by another program"),
         (with_attributes(atmosbox_format=provenance.FORMAT + 1), "format 2.*pip install --upgrade atmosbox"),
         (with_attributes(atmosbox_format="two"), "format two"),
         (lambda path: os.mkfifo(path), "may not be read"),
         (with_attributes(atmosbox_parameters="[" * 3000), "atmosbox_parameters .* is not as atmosbox writes it"),
         (with_attributes(atmosbox_headlines='{"a": 1}'), "atmosbox_headlines .* is not as atmosbox writes it"),
         (with_attributes(atmosbox_headlines="[[]]"), "which its headlines name"),
-        (turned, "holds molecule_position as molecule x elapsed_time x axis"),
         (unitless, "does not say the units of elapsed_time"),
-        (worded, "text in air_temperature, where numbers belong"),
         (boundless, "declares 5.6 GB"),
-        (deserted, "molecule_mass of no molecule"),
     ],
 )
 def test_a_file_that_is_not_a_run_is_refused_in_one_sentence(tmp_path, make, words):

@@ -4,23 +4,13 @@ import pytest
 import xarray as xr
 
 from atmosbox.errors import FileError
-from atmosbox.file.provenance import FORMAT, global_attributes, history_line, parameters
+from atmosbox.file.provenance import global_attributes, history_line, parameters
 
 
 def attributes():
     made = {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
     words = {"title": "Lifted air", "comment": "No ice, pas de glace à 25 °C.", "references": "doi:10.1000/1"}
     return global_attributes(made, command=["atmosbox", "run", "lifting-dry"], **words)
-
-
-def test_the_attributes_name_all_that_a_reader_asks_for():
-    found = attributes()
-    asked = "title institution source history references comment license date_created product_version"
-    assert all(found[name] for name in asked.split())
-    assert found["Conventions"] == "CF-1.11"
-    assert found["atmosbox_format"] == FORMAT
-    assert found["atmosbox_status"] == "complete"
-    assert "exact" in found["source"]
 
 
 def test_the_history_has_the_time_and_the_command_as_typed(monkeypatch):

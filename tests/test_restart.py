@@ -238,13 +238,6 @@ def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
         assert said in str(refusal.value)
 
 
-def test_a_run_that_goes_on_keeps_its_settings(part):
-    for words in (["--seed", "3"], ["--set", "duration=3"], ["--engine", "dsmc"], ["--save-molecules"]):
-        assert "cannot change a run that goes on" in refused("run", "--resume", part, *words)
-    assert "not for temperature" in refused("run", "temperature", "--resume", part)
-    assert read(part).attrs["atmosbox_status"] == "interrupted"
-
-
 def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
     runner.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
     assert "done.nc is finished: type atmosbox run --from" in refused("run", "--resume", tmp_path / "done.nc")

@@ -39,7 +39,10 @@ def known(*names):
     return {name: KNOWN[name] for name in names}
 
 
-@pytest.mark.parametrize("name", state_digest.CASES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.nightly if name.endswith("smooth") else ()) for name in state_digest.CASES],
+)
 def test_a_short_run_of_each_scene_ends_in_a_known_state(name):
     assert state_digest.digest(name) == KNOWN[name]
 

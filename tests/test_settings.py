@@ -7,10 +7,7 @@ import copy
 import json
 import math
 import pickle
-import subprocess
-import sys
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -102,15 +99,6 @@ def test_what_is_said_and_what_is_typed_is_read_again(value, unit, whole):
     assert count.parse(whole) == count.parse(str(whole)) == whole
 
 
-@given(
-    value=st.floats(-1e6, 1e6),
-    pair=st.sampled_from([("degC", "K"), ("degF", "degC"), ("km", "nm"), ("atm", "hPa"), ("h", "ps")]),
-)
-def test_a_number_is_the_same_after_the_way_to_another_unit_and_back(value, pair):
-    there = parse(f"{value!r} {pair[0]}", pair[1])
-    assert parse(f"{there!r} {pair[1]}", pair[0]) == pytest.approx(value, rel=1e-10, abs=1e-8)
-
-
 NO_NUMBER = [True, [25], np.array([25.0]), "warm", "٢٥", "2" * 300]
 NO_UNIT = ["25 deg", "25°", "25 blorp", "25 degC 300", "2*25 K", "10⁵ K", "5 dB", "5 rad", "5 delta_degC"]
 NO_UNIT += ["5 __class__", "5 pm-99", "5 m**9**9**9", "5 m/m"]
@@ -193,19 +181,6 @@ def test_any_text_is_a_finite_number_or_refused_in_one_sentence(text, unit):
             assert sentence.endswith(".")
 
 
-def test_pint_is_imported_only_for_a_unit_that_no_scene_declares():
-    script = (
-        "import sys\n"
-        "from atmosbox.scene.settings import Parameter\n"
-        "for text, unit in (('25 °C', 'K'), ('9.8m/s2', 'm s-2'), ('6.5 K/km', 'K km-1'), ('1013 mbar', 'hPa')):\n"
-        "    Parameter('x', unit, 1.0).parse(text)\n"
-        "assert not {'pint', 'numpy'} & set(sys.modules)\n"
-        "Parameter('x', 'degC', 1.0).parse('77 degF')\n"
-        "assert 'pint' in sys.modules\n"
-    )
-    subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[1], check=True, timeout=60)
-
-
 # The settings of a scene
 
 
@@ -231,11 +206,7 @@ def test_what_a_user_sets_is_kept_in_the_documented_unit_and_is_there_in_si():
 
 
 def test_there_is_no_way_round_the_checks():
-    for make in (
-        lambda asked: Settings(**asked),
-        Settings.from_user,
-        lambda asked: Settings.with_defaults(**asked)(),
-    ):
+    for make in (lambda asked: Settings(**asked), Settings.from_user, lambda asked: Settings.with_defaults(**asked)()):
         assert make({"temperature": "77 degF"}).si.temperature == 298.15
         for wrong, said in [
             ({"temperature": "5 m"}, "temperature = 5 m is a length"),
@@ -270,31 +241,10 @@ def test_an_unknown_name_is_refused_with_the_nearest_that_the_value_can_be_given
         (float, 15.0, "must be declared with setting"),
         (list[float], setting(15.0, "degC", "t"), "must be an int, a float, a bool or a str"),
         (bool, setting(True, "1", "t"), "must have a unit if it is a number"),
-        *(
-            (float, setting(*wrong, "t", high=500.0), "The setting t of .*Wrong ")
-            for wrong in [(15.0, ""), (15.0, "blorp")]
-        ),
-        *(
-            (float, setting(*wrong, "t", high=500.0), "The setting t of .*Wrong ")
-            for wrong in [(600.0, "degC"), ("x", "K")]
-        ),
+        (float, setting(15.0, "blorp", "t"), "The setting t of .*Wrong "),
+        (float, setting(600.0, "degC", "t", high=500.0), "The setting t of .*Wrong "),
     ],
 )
 def test_a_setting_that_is_declared_wrongly_is_refused_where_it_is_written(kind, declared, said):
     with pytest.raises(TypeError, match=said):
         type("Wrong", (SceneSettings,), {"__annotations__": {"t": kind}, "t": declared})
-
-
-values = st.booleans() | st.integers() | st.floats() | st.none() | st.text() | st.binary() | st.lists(st.integers())
-
-
-@given(st.dictionaries(st.sampled_from(list(KNOWN)), values, max_size=3))
-def test_any_values_make_settings_or_are_refused_in_one_sentence(asked):
-    try:
-        found = Settings.from_user(asked)
-    except SettingError as error:
-        sentence = str(error)
-        assert sentence.isprintable()
-        assert sentence.endswith(".")
-    else:
-        assert Settings.from_user(found.as_dict()) == found

@@ -1,11 +1,9 @@
 """The site: it is built without a warning, needs no network, and all its links work."""
 
 import importlib
-import json
 import os
 import posixpath
 import re
-import shlex
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -13,13 +11,9 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
-from typer.testing import CliRunner
 
-from atmosbox.cli import app
-from atmosbox.file.netcdf import read
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import prepare
-from atmosbox.simulation.verification import verify
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -29,8 +23,7 @@ FETCHED = {"stylesheet", "icon", "shortcut", "preload", "prefetch", "moduleprelo
 """Kinds of ``<link>`` whose target a browser fetches."""
 SHOWN = ["elastic-collisions"]
 """Scenes in the gallery of this test; each takes seconds."""
-PLAIN = {"COLUMNS": "100", "NO_COLOR": "1"}
-ENVIRONMENT = {**os.environ, **PLAIN, "PYTHONPATH": str(ROOT), "MPLBACKEND": "agg"}
+ENVIRONMENT = {**os.environ, "COLUMNS": "100", "NO_COLOR": "1", "PYTHONPATH": str(ROOT), "MPLBACKEND": "agg"}
 
 
 class Page(HTMLParser):
@@ -120,37 +113,3 @@ def test_everything_that_is_loaded_or_linked_is_there(site, pages):
             if not (folder / target).is_file() or (anchor and html and anchor not in pages[target].anchors):
                 missing.add((name, link))
     assert missing == set()
-
-
-def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path, monkeypatch):
-    text = (DOCS / "own-scene.md").read_text(encoding="utf-8")
-    (scene,) = re.findall(r"<!-- table:own-scene.source -->\n```python\n(.*?)```", text, re.DOTALL)
-    assert scene.rstrip() == (DOCS / "examples" / "my_scene.py").read_text(encoding="utf-8").rstrip()
-    (tmp_path / "my_scene.py").write_text(scene, encoding="utf-8")
-    blocks = [block.splitlines() for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)]
-    typed = [line for block in blocks for line in block]
-    assert [line.split()[:2] for line in typed] == [["atmosbox", verb] for verb in ("run", "plot", "run")]
-    monkeypatch.chdir(tmp_path)
-    said = []
-    for line in typed:
-        done = CliRunner().invoke(app, shlex.split(line)[1:], env=PLAIN)
-        assert done.exit_code == 0, done.output
-        said.append(done.stdout)
-    (printed,) = re.findall(r"<!-- table:own-scene.run -->\n```console\n(.*?)```", text, re.DOTALL)
-    command, header, row, *_ = printed.splitlines()
-    assert command == f"$ {typed[0]}"
-    assert said[0].splitlines()[0].split() == header.split()
-    label = re.split(r"\s{2,}", row)[0]
-    for run in (said[0], said[2]):  # on the exact engine, and on another
-        assert re.search(rf"^{re.escape(label)} .* yes$", run, re.MULTILINE)
-    engines = [
-        json.loads(read(tmp_path / name).atmosbox_parameters)["engine"] for name in ("my_scene.nc", "flask-dsmc.nc")
-    ]
-    assert engines == ["exact", "dsmc"]
-    assert all(check.passed for check in verify(read(tmp_path / "my_scene.nc")))
-    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
-        "flask-dsmc.nc",
-        "my_scene.nc",
-        "my_scene.png",
-        "my_scene.py",
-    ]

@@ -37,11 +37,6 @@ def crowded():
     return ParcelSet(x, v, length=(side,) * 3, walls=(Periodic(),) * 6)
 
 
-def baths():
-    x, v, side = gas(0.2)
-    return ParcelSet(x, v, length=(side,) * 3, walls=tuple(HeatBath(1.0 + 0.1 * k) for k in range(6)), rotation=3.0)
-
-
 def lifted(kind=ParcelSet, **more):
     x, v, side = gas(0.1)
     follow = FollowPressure([0.0, 1e9], [0.3, 0.15], mean_free_time=1.0)
@@ -53,11 +48,8 @@ def mist():
 
 
 BOXES = {
-    "dilute column": lambda: column(0.01),
     "column": lambda: column(0.1),
-    "dense column": lambda: column(0.3),
     "periodic, nearly frozen": crowded,
-    "six baths": baths,
     "piston": lifted,
     "mist under a piston": mist,
 }

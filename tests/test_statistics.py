@@ -55,19 +55,6 @@ def test_a_noisy_series_that_follows_a_slow_one_has_the_error_of_both():
     assert np.mean([each.mean**2 for each in found]) / variance == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / 1000))
 
 
-@pytest.mark.parametrize(
-    ("values", "blocks", "sentence"),
-    [
-        ([1.0, 2.0], 1, "blocks = 1 must be at least 2"),
-        ([1.0, 2.0], 20, "2 values cannot be divided into 20 blocks"),
-        (1.0, 20, "1 values cannot be divided into 20 blocks"),
-    ],
-)
-def test_too_few_values_have_no_error_bar(values, blocks, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        block_average(values, blocks)
-
-
 @pytest.mark.parametrize(("level", "critical"), [(0.05, 1.358), (0.01, 1.628), (0.001, 1.949)])
 def test_kolmogorov_and_smirnovs_critical_values(level, critical):
     assert kolmogorov_smirnov_critical(1, level) == pytest.approx(critical, abs=5e-4)

@@ -1,6 +1,5 @@
 """Speed against accuracy: the ways of running a scene, the measurement, its files and its figure."""
 
-import csv
 import json
 import math
 import os
@@ -15,9 +14,8 @@ from typer.testing import CliRunner
 
 from atmosbox import scenarios
 from atmosbox.cli import app
-from atmosbox.cli import tradeoff as command
 from atmosbox.engine import CoarseStepWarning
-from atmosbox.errors import FileError, SettingError
+from atmosbox.errors import FileError
 from atmosbox.file.netcdf import read
 from atmosbox.plot import save
 from atmosbox.plot.tradeoff_figure import recommended
@@ -79,15 +77,6 @@ def test_bias_and_noise_are_told_apart():
     assert abs(noise - 2.0) < 4.0 * 2.0 / math.sqrt(200.0)
 
 
-def test_the_noise_of_a_curve_is_no_bias():
-    # 25 points without bias: the part of the mean square due to chance is subtracted, to within its own scatter.
-    rng = np.random.default_rng(2)
-    bias, _, noise = _summary(rng.normal(size=(16, 25)), np.ones((16, 25)))
-    assert noise == pytest.approx(1.0, abs=4.0 / math.sqrt(2 * 15 * 25))
-    assert bias**2 < 4.0 * math.sqrt(2.0 / 25.0) / 16.0
-    assert np.isnan(_summary(np.full((2, 3), np.nan), np.ones((2, 3)))).all()
-
-
 def test_a_measurement_has_errors_beside_costs(found):
     assert found.sizes["rung"] == 3
     assert (found.members.values >= 1).all()
@@ -100,60 +89,6 @@ def test_a_measurement_has_errors_beside_costs(found):
     assert one.unit.item() == "K"
     assert (one.noise.values > 0.0).all()
     assert np.allclose(one.bias_se.values, one.noise.values / np.sqrt(found.members.values))
-
-
-def test_what_takes_too_long_or_an_engine_cannot_do_is_said_and_the_rest_is_measured(runs):
-    ways = [
-        *ways_of(QUICK, {})[:1],
-        Way("exact", {"ascent": 1e6, "molecules": 10_000}, 1, 1e6),
-        Way("stepped:delta=1000", {"molecules": 100}, 2, 0.1),
-    ]
-    found = measure("lifting-dry", ways=ways, budget=5.0)
-    assert found.members.values.tolist() == [2, 0, 0]
-    assert found.left_out.values[0] == ""
-    assert found.left_out.values[1].startswith("left out: one run takes about ")
-    assert "would cross the box" in found.left_out.values[2]
-
-
-class Clock:
-    """A clock that moves only with the simulated work, and the runs that use it.
-
-    ``building`` and ``running`` are seconds by way; a run calls its watch a hundred times.
-    """
-
-    def __init__(self, budget, building, running):
-        self.now, self.log, self.building, self.running = 0.0, [], building, running
-        self.results = [[] for _ in running]
-        self.said = repetition.repeat(budget, self.results, self.run, clock=lambda: self.now)
-
-    def run(self, k, watch):
-        self.log.append(k)
-        watch(0.0, "compiling the engine, once")
-        self.now += self.building[k]
-        for share in np.linspace(0.0, 1.0, 101):
-            watch(share, "running")
-            self.now += self.running[k] / 100.0
-        return self.now
-
-    @property
-    def counts(self):
-        return [len(done) for done in self.results]
-
-
-def test_the_budget_is_kept_and_what_fits_is_run():
-    # the second takes more than its share at first, the third is built for longer than it runs, the fourth never fits
-    watched = Clock(60.0, [0.0, 0.0, 5.0, 0.0], [1.0, 30.0, 0.5, 500.0])
-    assert watched.now <= 60.0
-    assert watched.counts[1] == 1
-    assert watched.counts[0] >= 1 <= watched.counts[2]
-    assert watched.counts[3] == 0
-    assert watched.said == ["", "", "", "left out: one run takes about 500 s"]
-
-
-def test_an_impossible_budget_is_refused():
-    for budget in [0.0, -1.0, math.nan, math.inf, 1e9]:
-        with pytest.raises(SettingError, match='budget="40s"'):
-            measure("lifting-dry", budget=budget)
 
 
 def stored(scene):
@@ -169,14 +104,6 @@ def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
     assert enough == chosen.met
     assert str(way.engine.item()) == chosen.way.engine
     assert scenarios.load(scene).Settings.from_user(json.loads(way.settings.item())).changed() == chosen.way.settings
-
-
-def test_the_table_has_a_line_for_every_run(found):
-    lines = command.lines(found, 200)
-    assert sum(line.startswith(("exact, molecules=100", "stepped:delta=0.4")) for line in lines) == 3
-    records = list(csv.DictReader(command.as_csv(found).splitlines()))
-    assert [record["run"] for record in records] == [str(name) for name in found.rung.values]
-    assert float(records[0]["temperature_at_700_hpa_noise_K"]) > 0.0
 
 
 def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):

@@ -32,13 +32,6 @@ def test_the_units_of_a_scale_fit_together():
     assert impulse_per_area_and_time == pytest.approx(scale.pressure, rel=1e-14)
 
 
-def test_eight_hundred_molecules_of_air_at_1000_hpa_fill_a_cube_of_32_nm():
-    scale = air()
-    edge = 32e-9 / scale.length
-    reduced_pressure = 800 * scale.reduced_temperature(288.15) / edge**3
-    assert reduced_pressure * scale.pressure == pytest.approx(97100, abs=100)
-
-
 def test_a_weight_scales_what_counts_molecules_and_nothing_else():
     one, many = air(), air(weight=50.0)
     for name in ("number_density", "mass_density", "pressure", "total_energy"):

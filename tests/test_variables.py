@@ -3,7 +3,7 @@
 That every variable has a unit, words and a name that CF knows is checked by CF's own program in tests/test_output.py.
 """
 
-from atmosbox.file.variables import VARIABLES, variable
+from atmosbox.file.variables import variable
 
 
 def test_a_companion_is_called_what_cf_calls_it():
@@ -27,10 +27,3 @@ def test_every_temperature_says_whether_it_is_a_difference():
     ]  # fmt: skip
     for name, metadata in cases:
         assert variable(name).units_metadata == metadata
-
-
-def test_a_standard_name_stands_at_one_variable_so_that_it_is_found_without_a_doubt():
-    names = [each.standard_name for each in VARIABLES.values() if each.standard_name]
-    assert len(names) > 10
-    assert sorted(names) == sorted(set(names))
-    assert all(variable(f"{name}_theory").standard_name is None for name in VARIABLES)

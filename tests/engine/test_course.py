@@ -41,12 +41,6 @@ def test_a_new_aim_on_the_way_forgets_the_old_one_but_not_the_way():
     assert [course.moment(t) for t in (4.0, 5.0, 7.0, 10.0, 50.0)] == pytest.approx([4.0, 3.0, 5.0, 8.0, 8.0])
 
 
-def test_from_the_end_it_turns_back_at_once():
-    course = Course(10.0)
-    course.lead(30.0, 4.0)
-    assert [course.moment(t) for t in (8.0, 20.0, 30.0, 33.0, 40.0)] == pytest.approx([8.0, 10.0, 10.0, 7.0, 4.0])
-
-
 def test_what_no_plan_knows_is_refused():
     for time, towards in [(1.0, 2.0), (9.0, -1.0), (9.0, 10.5), (math.nan, 1.0), (9.0, math.inf)]:
         course = Course(10.0)

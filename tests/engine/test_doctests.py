@@ -30,15 +30,3 @@ def test_doctest_finds_the_examples_of_every_kernel():
     assert len(kernels) > 30
     finder = doctest.DocTestFinder(exclude_empty=True)
     assert kernels <= {found.name for module in MODULES for found in finder.find(module) if found.examples}
-
-
-def listed(module):
-    """Return the names that a docstring lists, one in each line."""
-    return {line.split("`")[1] for line in module.__doc__.splitlines() if line.startswith("`")}
-
-
-def test_the_engine_says_where_to_find_each_of_its_folders_and_files():
-    assert listed(atmosbox.engine) == {folder.__name__.rpartition(".")[2] for folder in FOLDERS}
-    for folder in FOLDERS:
-        names = [module.__name__.rpartition(".") for module in MODULES]
-        assert listed(folder) == {name for package, _, name in names if package == folder.__name__}

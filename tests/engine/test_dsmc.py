@@ -101,24 +101,14 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
 
 
 @pytest.mark.parametrize(
-    ("walls", "gravity"),
-    [
-        *((walls, 0.0) for walls in (SMOOTH, TURNING, (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))),
-        *(
-            (walls, 0.3)
-            for walls in ((*TURNING[:4], *SMOOTH[:2]), (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))
-        ),
-        pytest.param(SMOOTH, 0.3, marks=pytest.mark.nightly),
-    ],
+    ("walls", "gravity"), [(TURNING, 0.0), ((*TURNING[:4], *SMOOTH[:2]), 0.3), ((*SMOOTH[:5], Piston(-0.05)), 0.3)]
 )
 def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):
     number, side = (BLOCK + 500, 8.0) if COMPILED else (40, 8.0)
     small = 1e-7  # so that there are cells, and no collisions
     gas = box(number, side, walls=walls, gravity=gravity, diameter=small, dt=0.2)
     start = gas.snapshot()
-    # under a piston with next to no gravity instead of none: it needs no further kernels
-    weak = gravity or 1e-300 * isinstance(walls[5], Piston)
-    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=weak, diameter=small)
+    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=gravity, diameter=small)
     gas.advance(75.0)  # far enough to be put in the order of cells twice
     exact.advance(gas.time)
     assert gas.steps > 65
@@ -154,16 +144,6 @@ def test_no_molecule_of_dsmc_leaves_the_box(dt):
     assert gas.ledger() <= 1e-12
 
 
-def test_a_hot_start_collides_as_it_should_and_cools_to_its_walls():
-    gas = box(3000, 20.0, kT=1e6, walls=(HeatBath(1.0),) * 6)
-    gas.advance(200.0 * gas.time_step)
-    assert gas.contacts > 1000
-    gas.advance(20_000.0 * gas.time_step)
-    assert 1.4 * gas.number < gas.energy()[0] < 1e-4 * 1.5e6 * gas.number
-    assert gas.escaped() == 0
-    assert gas.ledger() <= 1e-12
-
-
 def test_a_gas_at_rest_falls_and_collides():
     number = 1000
     gas = box(number, 20.0, velocity=np.zeros((number, 3)), walls=SMOOTH, gravity=0.1)
@@ -174,13 +154,6 @@ def test_a_gas_at_rest_falls_and_collides():
     still = box(number, 20.0, velocity=np.zeros((number, 3)))
     still.advance(10.0)
     assert still.contacts == 0
-
-
-def test_a_cold_floor_in_strong_gravity_does_not_stop_time():
-    gas = box(50, 5.0, walls=(*SMOOTH[:4], HeatBath(1e-12), Specular()), gravity=100.0)
-    gas.advance(1.0)
-    assert gas.escaped() == 0
-    assert gas.energy()[0] < 0.1 * gas.number
 
 
 def test_cells_and_steps_are_as_asked():
@@ -201,18 +174,6 @@ def test_cells_and_steps_are_as_asked():
     assert gas.time_step <= 0.1 * free_time
 
 
-def test_cells_stretch_with_the_box():
-    gas = box(4000, 30.0, walls=(*TURNING[:4], Specular(), Piston(0.5)))
-    before = gas.resolution()
-    gas.advance(29.0 / 0.5)
-    assert gas.ceiling == pytest.approx(59.0, rel=0.01)
-    after = gas.resolution()
-    # twice as high, twice the mean free path: the upright side of a cell keeps up, the mean free time is longer
-    assert after.cell == pytest.approx(before.cell, rel=0.15)
-    assert after.step < 0.6 * before.step
-    assert gas.escaped() == 0
-
-
 def test_a_piston_that_comes_down_too_far_says_so():
     gas = box(30, 10.0, walls=(*SMOOTH[:5], Piston(-1.0)))
     with pytest.raises(StalledError, match=r"the piston has come down to 1\.\d+ at t = [89]\.\d+"):
@@ -223,10 +184,3 @@ def test_a_piston_that_comes_down_too_far_says_so():
     gas.set_piston_velocity(1.0)
     gas.advance(20.0)
     assert gas.ceiling > 5.0
-
-
-@many_molecules
-def test_a_molecule_takes_few_bytes():
-    assert box(100_000, 200.0).memory() < 80 * 100_000
-    spinning = box(100_000, 200.0, rotation=2)
-    assert spinning.memory() < 88 * 100_000

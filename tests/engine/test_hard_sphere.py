@@ -42,20 +42,6 @@ def test_an_overlap_by_rounding_touches_at_once_while_closing_and_never_while_pa
     assert time_to_contact(1.0 - 1e-15, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0) == math.inf
 
 
-def test_a_tiny_gap_keeps_all_its_digits():
-    gap = 2.0**-40
-    assert time_to_contact(1.0 + gap, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0) == pytest.approx(gap, rel=1e-9)
-
-
-def test_two_that_move_alike_never_meet():
-    assert time_to_contact(2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0) == math.inf
-
-
-def test_a_pass_at_less_than_a_diameter_is_a_contact_and_at_more_a_miss():
-    assert time_to_contact(5.0, 0.999, 0.0, -1.0, 0.0, 0.0, 1.0) < 5.0
-    assert time_to_contact(5.0, 1.001, 0.0, -1.0, 0.0, 0.0, 1.0) == math.inf
-
-
 @given(VECTORS, VECTORS, VECTORS, MASSES, MASSES)
 def test_a_contact_keeps_momentum_energy_and_the_motion_across_the_line_of_centres(r, v, w, mass, other_mass):
     r, v, w = np.array(r), np.array(v), np.array(w)
@@ -68,11 +54,6 @@ def test_a_contact_keeps_momentum_energy_and_the_motion_across_the_line_of_centr
     assert mass * after + other_mass * other_after == pytest.approx(momentum, abs=1e-10 * (mass + other_mass))
     assert r @ (after - other_after) == pytest.approx(-(r @ (v - w)), abs=1e-9)
     assert np.cross(r, change) == pytest.approx(np.zeros(3), abs=1e-9)
-
-
-def test_a_light_molecule_bounces_off_a_heavy_one_as_off_a_wall():
-    change = resolve_contact(1.0, 0.0, 0.0, -3.0, 0.5, 0.0, 1.0, 1e12)
-    assert change == pytest.approx((6.0, 0.0, 0.0))
 
 
 def test_shared_energy_is_kept_and_divided_by_degrees_of_freedom():
@@ -88,7 +69,3 @@ def test_shared_energy_is_kept_and_divided_by_degrees_of_freedom():
             degrees = np.array([dimensions + 1.0, *rotations])
             error = shares.std(axis=0) / math.sqrt(number)
             assert (np.abs(shares.mean(axis=0) - 5.0 * degrees / degrees.sum()) <= 4.0 * error + 1e-12).all()
-
-
-def test_without_rotation_the_relative_motion_keeps_all_its_energy():
-    assert share_energy(3.0, 3.0, 0.0, 0.0, random_state(1)) == (3.0, 0.0, 0.0)

@@ -32,12 +32,6 @@ def test_a_lattice_holds_more_than_a_random_start_between_walls():
     assert x.max() <= 6.7 + 1e-12
 
 
-def test_discs_on_a_lattice_lie_in_the_middle_plane():
-    x = lattice_positions((20.0, 3.0, 20.0), np.ones(300), planar=True)
-    assert (x[:, 1] == 1.5).all()
-    assert distances(x)[np.triu_indices(300, 1)].min() >= 1.0 - 1e-12
-
-
 def test_the_sites_are_chosen_at_random_where_there_are_more_than_molecules():
     arguments = ((8.0, 8.0, 8.0), np.ones(95))
     first = lattice_positions(*arguments)
@@ -46,10 +40,6 @@ def test_the_sites_are_chosen_at_random_where_there_are_more_than_molecules():
     assert (one != other).any()
     assert (one != first).any()
     assert distances(one)[np.triu_indices(95, 1)].min() >= 1.0
-
-
-def test_no_molecules_need_no_site():
-    assert lattice_positions((1.0, 1.0, 1.0), []).shape == (0, 3)
 
 
 def test_what_no_such_lattice_holds_is_refused():

@@ -5,18 +5,12 @@ import copy
 import numpy as np
 import pytest
 
-from atmosbox.engine import FollowPressure, Mist, ParcelSet, Periodic, Piston, Pool, Specular, StalledError, Substance
-from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine import FollowPressure, Mist, ParcelSet, Piston, Specular, Substance
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 
 WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 UNDER_PISTON = (*(Specular(),) * 5, Piston())
-BETWEEN_PERIODIC_SIDES = (*(Periodic(),) * 4, Specular(), Piston())
 TAU = 2.0
-
-
-class InPython(FollowPressure):
-    """The same law; as another type, so that it is called in Python."""
 
 
 def gas(planar=False):
@@ -34,17 +28,11 @@ def follow(first, last, kind=FollowPressure, duration=400.0):
 MIXTURE = {"mass": [1.0, 0.62] * 32, "rotation": [2.0, 3.0] * 32, "rotational_energy": 1.0}
 BOXES = {
     "dry": lambda driver: ParcelSet(*gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, rotation=2.0),
-    "between periodic sides": lambda driver: ParcelSet(
-        *gas(), length=(12.0,) * 3, walls=BETWEEN_PERIODIC_SIDES, driver=driver, rotation=2.0, layers=3
-    ),
     "plane": lambda driver: ParcelSet(
         *gas(planar=True), length=(15.0, 3.0, 15.0), walls=UNDER_PISTON, driver=driver, planar=True, rotation=2.0
     ),
     "mist": lambda driver: MoistParcelSet(
         *gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, liquid=Mist(WATER, number=9, kT=1.0), **MIXTURE
-    ),
-    "pool": lambda driver: MoistParcelSet(
-        *gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, liquid=Pool(WATER, number=9, kT=1.0), **MIXTURE
     ),
 }
 
@@ -55,13 +43,7 @@ def pressure_of(name):
     return driver.pressure(BOXES[name](driver))
 
 
-# kernels of their own: no scene is lifted between periodic sides
-OWN_KERNELS = ("between periodic sides", "pool")
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.nightly if n in OWN_KERNELS else ()) for n in BOXES]
-)
+@pytest.mark.parametrize("name", BOXES)
 def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
     start = pressure_of(name)
     box = BOXES[name](follow(start, 0.5 * start))
@@ -77,26 +59,3 @@ def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
     assert box.contacts > 20
     assert box.ceiling > 12.0
     assert box.ledger() < 1e-12
-
-
-@pytest.mark.parametrize("name", ["dry", pytest.param("mist", marks=pytest.mark.nightly)])  # kernels of its own
-def test_a_driver_in_python_lifts_the_box_alike_until_rounding_has_grown(name):
-    start = pressure_of(name)
-    ours, theirs = BOXES[name](follow(start, 0.5 * start)), BOXES[name](follow(start, 0.5 * start, InPython))
-    assert ours._ascends
-    assert not theirs._ascends
-    for box in (ours, theirs):
-        box.advance(4.0 * TAU)
-    assert ours.contacts == theirs.contacts > 10
-    assert ours.ceiling == pytest.approx(theirs.ceiling, rel=1e-7)
-    assert ours.piston_velocity == pytest.approx(theirs.piston_velocity, rel=1e-4)
-
-
-@pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
-def test_a_lift_that_is_led_down_and_crushes_its_molecules_says_so():
-    start = pressure_of("dry")
-    box = BOXES["dry"](follow(start, 1e9 * start))
-    with pytest.raises(StalledError, match="the piston has come down"):
-        box.advance(400.0)
-    assert box.escaped() == 0
-    assert box.ceiling == pytest.approx(box._lowest_ceiling) or box.ceiling > box._lowest_ceiling

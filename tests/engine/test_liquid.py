@@ -10,24 +10,19 @@ import numpy as np
 import pytest
 from scipy import integrate, special, stats
 
-from atmosbox.engine import Mist, Pool, Substance
+from atmosbox.engine import Mist, Substance
 from atmosbox.engine.core.random import gamma_of_shape
 from atmosbox.engine.liquid.reservoir import (
-    CONDENSED,
-    EVAPORATED,
     LIQUID,
     RAINED,
     RAINED_ENERGY,
     THERMAL,
-    condense,
     evaporate,
     evaporation_rate,
     exchange,
     heat_capacity,
-    leave,
     new_reservoir,
     rain_out,
-    wait,
 )
 from tests.engine.boxes import held, random_state
 
@@ -94,23 +89,6 @@ def test_a_drop_of_any_size_in_a_heat_bath_emits_what_hertz_and_knudsen_say(numb
     assert mean == pytest.approx(hertz_knudsen(kT), rel=1e-6)
 
 
-@pytest.mark.parametrize("kT", [0.5, 1.0])
-def test_at_rest_the_rate_nears_that_of_hertz_and_knudsen_as_one_over_the_size(kT):
-    # ln(R / R_HK) at U = C T is -((y + a - 1)^2 + a - 1) / 2C + O(1 / C^2), with a = g - c_l and y = phi / T
-    a, y = SHAPE - C_L, PHI / kT
-    leading = -0.5 * ((y + a - 1.0) ** 2 + a - 1.0)
-    previous = math.inf
-    for number in (100, 200, 400, 800, 1600):
-        capacity = C_L * number
-        ratio = rate_at(ledger_of(number), capacity * kT) / hertz_knudsen(kT)
-        off = abs(capacity * math.log(ratio) - leading)
-        assert off < 0.6 * previous
-        previous = off
-    assert off < 0.01 * max(abs(leading), 1.0)
-    # for a million molecules the correction is negligible; logarithms of 1e8 leave eight digits
-    assert rate_at(ledger_of(1_000_000), 1e6 * C_L * kT) == pytest.approx(hertz_knudsen(kT), rel=1e-6)
-
-
 def test_the_substance_knows_the_vapour_pressure_that_the_rate_implies():
     for kT in (0.3, 1.0, 2.0):
         assert WATER.saturation_pressure(kT) == pytest.approx(K * kT ** (4.0 - C_L) * math.exp(-PHI / kT), rel=1e-12)
@@ -120,43 +98,6 @@ def test_the_substance_knows_the_vapour_pressure_that_the_rate_implies():
     kT, step = 0.9, 1e-5
     above, below = (WATER.saturation_pressure(kT * math.exp(s)) for s in (step, -step))
     assert math.log(above / below) / (2.0 * step) == pytest.approx((PHI + (4.0 - C_L) * kT) / kT, rel=1e-8)
-
-
-def test_a_part_that_sticks_leaves_in_the_same_proportion():
-    for part in (0.3, 0.01):
-        assert evaporation_rate(ledger_of(20, sticking=part)) == pytest.approx(
-            part * evaporation_rate(ledger_of(20)), rel=1e-12
-        )
-
-
-@pytest.mark.parametrize("nuclei", [0.0, 50.0])
-def test_no_molecule_leaves_an_empty_liquid_or_one_with_less_than_the_binding_energy(nuclei):
-    assert rate_at(ledger_of(0, nuclei=nuclei), 1e6) == 0.0
-    for energy in (0.0, -1e-17, 0.5 * PHI, PHI, math.nextafter(PHI, 0.0)):
-        assert rate_at(ledger_of(1, nuclei=nuclei), energy) == 0.0
-    assert 0.0 <= rate_at(ledger_of(1, nuclei=nuclei), math.nextafter(PHI, 10.0)) < 1e-30
-
-
-def test_no_size_and_no_energy_makes_the_rate_overflow():
-    for number in (1, 2, 1000, 1_000_000):
-        for nuclei in (0.0, 1e-9, 1e5):
-            ledger = ledger_of(number, nuclei=nuclei)
-            for energy in (1e-300, 1e-3, PHI * (1.0 + 1e-15), 1e3, 1e8, 1e100, 1e300):
-                rate = rate_at(ledger, energy)
-                assert math.isfinite(rate)
-                assert rate >= 0.0
-    # phi / T of 32, as of water at -60 degrees Celsius
-    cold = Substance(**FACTS | {"binding_energy": 32.0, "volatility": 1e10})
-    assert evaporation_rate(ledger_of(100_000, substance=cold)) == pytest.approx(
-        hertz_knudsen(1.0, cold), rel=1e3 / 100_000
-    )
-
-
-def test_waiting_times_are_exponential_and_without_a_rate_there_is_no_end():
-    state = random_state()
-    sample = np.array([wait(2.5, state) for _ in range(NUMBER)])
-    assert stats.kstest(sample, "expon", args=(0.0, 0.4)).pvalue > 1e-4
-    assert wait(0.0, state) == math.inf
 
 
 # ------------------------------------------------------------------ with which energies
@@ -212,37 +153,7 @@ def test_a_molecule_that_does_not_stick_shares_all_energy_with_the_liquid(rotati
     assert ledger.energy[THERMAL] == 0.5 * capacity
 
 
-def test_a_molecule_keeps_its_energy_where_there_is_no_liquid_to_share_with():
-    ledger = ledger_of(0)
-    flight, spin = exchange(ledger, 2.0, 3.0, random_state())
-    assert flight + spin == pytest.approx(2.0, rel=1e-14)
-
-
-def test_the_spectrum_of_a_liquid_that_was_cold_at_the_start_keeps_to_its_bins():
-    # the bins are as wide as its kT then: what is counted behind the last belongs into the last
-    room = np.zeros(100, np.int64)
-    ledger = ledger_of(2, kT=0.0)._replace(spectrum=room[20:80])
-    ledger.energy[THERMAL] = 50.0
-    state = random_state()
-    for _ in range(10):
-        evaporate(ledger, state)
-    assert ledger.spectrum.sum() == 10
-    assert room.sum() == 10
-
-
 # ------------------------------------------------------------------ counters
-
-
-def test_condensing_adds_the_binding_energy_and_evaporating_removes_it():
-    ledger = ledger_of(2, nuclei=5.0)
-    start = float(ledger.energy[THERMAL])
-    condense(ledger, 1.25)
-    assert ledger.energy[THERMAL] == pytest.approx(start + 1.25 + PHI, rel=1e-15)
-    assert (ledger.count[LIQUID], ledger.count[CONDENSED]) == (3, 1)
-    assert heat_capacity(ledger) == 3 * C_L + 5.0
-    leave(ledger, 1.25)
-    assert ledger.energy[THERMAL] == pytest.approx(start, rel=1e-15)
-    assert (ledger.count[LIQUID], ledger.count[EVAPORATED]) == (2, 1)
 
 
 def test_rain_takes_its_share_of_the_heat_and_leaves_the_temperature_alone():
@@ -254,26 +165,3 @@ def test_rain_takes_its_share_of_the_heat_and_leaves_the_temperature_alone():
     assert ledger.energy.sum() == pytest.approx(start, rel=1e-15)
     assert ledger.energy[RAINED_ENERGY] == pytest.approx(0.7 * 4 * C_L, rel=1e-14)
     assert (ledger.count[LIQUID], ledger.count[RAINED]) == (0, 4)
-
-
-def test_a_new_reservoir_says_what_the_liquid_says():
-    mist = Mist(WATER, number=3, kT=0.5, nuclei=8.0, sticking=0.4, rain=0.1, area=AREA)
-    ledger = new_reservoir(mist, mist.area, 7, 4, 1)
-    assert ledger.energy.tolist() == [0.5 * (3 * C_L + 8.0), 0.0]
-    assert ledger.count.tolist() == [3, 0, 0, 0, 0]
-    assert ledger.absent[: ledger.top[0]].tolist() == [6, 5, 4]
-    assert np.isinf(ledger.clock).all()
-    assert (ledger.area, ledger.kind, ledger.sticking, ledger.rain, ledger.rotation) == (AREA, 1, 0.4, 0.1, 3.0)
-    assert ledger.log_rate == pytest.approx(math.log(0.4 * AREA * K / math.sqrt(2.0 * math.pi * MASS)), rel=1e-14)
-    assert (ledger.spectrum.sum(), ledger.bin_width > 0.0) == (0, True)
-    empty = new_reservoir(Pool(WATER), 1.0, 0, 0, -1)
-    assert (empty.top[0], empty.energy[0], len(empty.absent)) == (0, 0.0, 1)
-
-
-def test_whole_numbers_make_the_same_kind_of_ledger_as_decimals():
-    # the kernels are compiled for the types of its fields: another type is another dozen seconds
-    whole = Substance(mass=1, diameter=1, binding_energy=3, heat_capacity=9, volatility=1, rotation=3)
-    mist = Mist(whole, number=2, kT=1, nuclei=5, sticking=1, rain=0, area=7)
-    usual = ledger_of(2)
-    for name, value, wanted in zip(usual._fields, new_reservoir(mist, mist.area, 2, 0, 0), usual, strict=True):
-        assert type(value) is type(wanted), name

@@ -1,23 +1,11 @@
-"""A parcel of air refuses impossible boxes, keeps its balances, and does the same however a run is divided.
-
-The boxes below need the kernels that `test_reference` needs, and no others: each new set costs seconds of compilation.
-"""
+"""Molecules never overlap nor leave the box, keep what mechanics keeps, and a driver moves their piston."""
 
 import math
 
 import numpy as np
 import pytest
 
-from atmosbox.engine import (
-    HeatBath,
-    ParcelSet,
-    Periodic,
-    Piston,
-    Ramp,
-    RefusedError,
-    Specular,
-    StalledError,
-)
+from atmosbox.engine import HeatBath, ParcelSet, Piston, Ramp, RefusedError, Specular
 from atmosbox.engine.exact.reference import Reference
 from tests.engine.boxes import SMOOTH, TURNING, Pulse, apart, many_events
 
@@ -45,21 +33,11 @@ def box(name, number=40, **changes):
         "walls": SMOOTH,
         "seed": 77,
     }
-    mixture = {
-        "mass": random.choice([1.0, 30.0], number),
-        "diameter": random.choice([0.1, 0.3, 1.0], number),
-    }
-    bath = HeatBath(Ramp(0.5, 2.0, start=1.0, end=9.0), accommodation=0.7)
-    if name == "equal":
-        made |= {"walls": (bath, Specular(), bath, bath, HeatBath(1.0), Specular())}
-    elif name == "piston":
+    mixture = {"mass": random.choice([1.0, 30.0], number), "diameter": random.choice([0.1, 0.3, 1.0], number)}
+    if name == "piston":
         made |= {"walls": (*(Specular(),) * 4, HeatBath(1.5), Piston()), "gravity": 0.3, "driver": Pulse(speeds=GENTLE)}
-    elif name == "points":
-        made |= {"walls": (*(bath,) * 2, *SMOOTH[:4]), "diameter": 0.0}
     elif name == "mixed":
-        made |= mixture | {"walls": (bath, *SMOOTH[:5])}
-    elif name == "periodic":
-        made |= {"walls": TURNING}
+        made |= mixture | {"walls": (HeatBath(Ramp(0.5, 2.0, start=1.0, end=9.0), accommodation=0.7), *SMOOTH[:5])}
     elif name == "periodic rotation":
         made |= mixture | {
             "walls": TURNING,
@@ -76,7 +54,7 @@ def box(name, number=40, **changes):
     return made | changes
 
 
-NAMES = ["equal", "piston", "points", "mixed", "periodic", "periodic rotation", "everything"]
+NAMES = ["equal", "piston", "mixed", "periodic rotation", "everything"]
 by_name = pytest.mark.parametrize("name", NAMES)
 
 
@@ -98,38 +76,17 @@ def test_molecules_never_overlap_nor_leave_the_box_and_the_ledger_closes(name):
     for time in np.linspace(0.0, 40.0, 41)[1:]:
         parcel.advance(time)
         position = parcel.snapshot().position
-        assert name == "points" or least_gap(parcel) > -1e-9
+        assert least_gap(parcel) > -1e-9
         assert (position >= inside - 1e-9).all()
         assert (position <= parcel.length - inside + 1e-9).all()
         assert parcel.ledger() < 1e-12
     events = parcel.events
-    assert (events["contacts"] > 100) == (name != "points")
+    assert events["contacts"] > 100
     assert (events["wall_hits"] > 100) == (not all(parcel.periodic))
     assert events["wall_hits"] == parcel.wall_hits.sum()
 
 
-@pytest.mark.parametrize("name", ["equal", "mixed", "periodic", "periodic rotation"])
-def test_every_single_contact_keeps_momentum_and_energy(name):
-    walls = TURNING if "periodic" in name else SMOOTH
-    parcel = ParcelSet(**box(name, walls=walls))
-    mass = parcel.mass[:, None]
-    before, energy = parcel.snapshot().velocity, sum(parcel.energy())
-    alone = 0
-    for time in np.arange(0.0, 6.0, 0.002)[1:]:
-        contacts, hits = parcel.contacts, parcel.wall_hits.sum()
-        parcel.advance(time)
-        after = parcel.snapshot().velocity
-        if parcel.wall_hits.sum() == hits:
-            assert np.sum(mass * after, axis=0) == pytest.approx(np.sum(mass * before, axis=0), abs=1e-10)
-        if parcel.contacts == contacts + 1 and parcel.wall_hits.sum() == hits:
-            alone += 1
-            assert (before != after).any(axis=1).sum() == 2
-        assert sum(parcel.energy()) == pytest.approx(energy, rel=1e-12)
-        before = after
-    assert alone > 20
-
-
-@pytest.mark.parametrize("name", ["equal", "piston", "mixed"])
+@pytest.mark.parametrize("name", ["piston", "mixed"])
 def test_what_the_walls_take_up_is_what_the_molecules_lose(name):
     # smooth walls: heat baths also exert forces along the wall
     parcel = ParcelSet(**box(name, driver=None, walls=(*SMOOTH[:5], Piston() if name == "piston" else Specular())))
@@ -162,24 +119,6 @@ def test_a_driven_piston_is_one_constant_piston_after_another():
         hits = parcel.wall_hits[5]
     assert hits > 3
     assert parcel.work != 0.0
-
-
-def test_a_piston_that_has_given_way_is_not_met_where_it_would_have_been():
-    # the first molecule is stopped by the second while the piston comes down, and waits for it; then it goes up
-    position = np.vstack([[[0.75, 0.5, 0.5]], lattice(200, (8, 8, 8), 0.9)[:, :] + [0, 0, 0]])
-    position = position[np.r_[True, np.abs(position[1:] - position[0]).max(axis=1) > 0.9]]
-    row = np.abs(position[:, 1:] - 0.5).max(axis=1) < 0.3
-    position = np.vstack([position[:1], [[1.5, 0.5, 0.5]], position[1:][~row[1:]]])
-    velocity = np.zeros_like(position)
-    velocity[0, 0] = 1.0
-    driver = Pulse(interval=1.0, speeds=(-4.0, *(1.0,) * 20))
-    parcel = ParcelSet(
-        position, velocity, length=(8, 8, 20), diameter=0.2, walls=(*SMOOTH[:5], Piston()), driver=driver, gravity=1e-9
-    )
-    parcel.advance(12.0)
-    assert parcel.contacts >= 1
-    assert parcel.wall_hits[5] == 0
-    assert parcel.snapshot().position[:, 2].max() < 8.0
 
 
 @many_events
@@ -221,47 +160,18 @@ def test_the_driver_is_asked_at_the_multiples_of_its_interval():
 
 
 # boxes with no or one molecule need further kernels: numba knows arrays of so few elements by another type
-FEW = [(name, number) for name in ("equal", "piston", "mixed", "periodic") for number in range(4)]
-FEW = [
-    pytest.param(name, number, marks=pytest.mark.nightly if number < (1 if name == "equal" else 2) else ())
-    for name, number in FEW
-]
+LATER = [pytest.param("piston", number, marks=pytest.mark.nightly) for number in (0, 1)]
 
 
-@pytest.mark.parametrize(("name", "number"), FEW)
+@pytest.mark.parametrize(("name", "number"), [("piston", 2), ("piston", 3), *LATER])
 def test_a_box_may_hold_hardly_anything(name, number):
     parcel = ParcelSet(**box(name, number=number))
     parcel.advance(30.0)
     assert parcel.number == len(parcel.snapshot().position) == number
     assert parcel.ledger() < 1e-12
-    assert (parcel.events["wall_hits"] > 0) == (number > 0 and name != "periodic")
+    assert (parcel.events["wall_hits"] > 0) == (number > 0)
     assert math.isfinite(parcel.degrees_of_freedom)
     assert repr(parcel).startswith(f"<ParcelSet: {number} molecules")
-
-
-def test_a_plane_gas_may_lie_on_the_border_of_a_periodic_box():
-    walls = (Specular(), Specular(), Periodic(), Periodic(), Specular(), Specular())
-    made = {"length": (6, 6, 6), "walls": walls, "planar": True}
-    parcel = ParcelSet([[1, 0, 2], [3, 0, 2]], [[1, 0, 0], [-1, 0, 0]], **made)
-    parcel.advance(1.0)
-    assert parcel.snapshot().velocity[:, 0].tolist() == [-1.0, 1.0]
-
-
-def test_a_parcel_tells_what_it_holds():
-    parcel = ParcelSet(**box("everything"))
-    assert repr(parcel) == "<ParcelSet: 40 molecules in 5.5 x 5.5 x 6, t = 0, 0 contacts>"
-    assert parcel.length.tolist() == [5.5, 5.5, 6.0]
-    assert parcel.volume == pytest.approx(5.5 * 5.5 * 6.0)
-    assert parcel.periodic == (True, True, False)
-    assert (parcel.gravity, parcel.planar, parcel.piston_velocity) == (0.3, False, 0.1)
-    assert parcel.degrees_of_freedom == pytest.approx(3.0 + box("everything")["rotation"].mean())
-    assert set(parcel.events) == {"contacts", "entered", "left", "stale", "wall_hits"}
-    kT = parcel.wall_kT()
-    assert kT[4] == 1.0
-    assert np.isnan(np.delete(kT, 4)).all()
-    assert parcel.memory() > 40 * 64
-    parcel.advance(0.5)
-    assert parcel.ceiling == parcel.length[2] == pytest.approx(6.05)
 
 
 def test_energy_is_that_of_its_parts():
@@ -299,19 +209,3 @@ def test_only_a_piston_can_be_moved_and_at_a_finite_velocity():
         with pytest.raises(RefusedError, match="velocity of the piston = "):
             parcel.set_piston_velocity(velocity)
     assert parcel.piston_velocity == 0.0
-
-
-@many_events
-def test_a_floor_so_cold_that_molecules_come_to_rest_is_named():
-    cold = (*SMOOTH[:4], HeatBath(1e-40), Piston())
-    made = box("piston", number=3, driver=None, walls=cold, velocity=np.zeros((3, 3)), gravity=50.0)
-    with pytest.raises(StalledError, match="z_low at kT = 1e-40 is too cold"):
-        ParcelSet(**made).advance(1e4)
-
-
-@many_events
-def test_a_side_that_leaves_a_molecule_no_room_is_named():
-    baths = (*SMOOTH[:4], HeatBath(1.0), HeatBath(1.0))
-    made = box("equal", number=2, walls=baths, length=(5.5, 5.5, 1.0), position=[[2.0, 2.0, 0.5], [4.0, 4.0, 0.5]])
-    with pytest.raises(StalledError, match=r"length = 1 along z leaves a diameter of 1 no room"):
-        ParcelSet(**made).advance(1.0)

@@ -99,10 +99,3 @@ def test_the_energy_of_quadratic_degrees_of_freedom_is_gamma_distributed(degrees
         mean = math.gamma(shape + power) / math.gamma(shape)
         square = math.gamma(shape + 2 * power) / math.gamma(shape)
         assert held(energies**power, mean, square - mean**2)
-
-
-def test_no_degrees_of_freedom_hold_no_energy_and_draw_no_number():
-    state = random_state(11)
-    before = state.copy()
-    assert gamma(0.0, state) == 0.0
-    assert (state == before).all()

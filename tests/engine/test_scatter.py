@@ -26,22 +26,6 @@ def test_scattered_molecules_are_apart_and_inside_their_walls(periodic):
     assert (x <= sides - wall).all()
 
 
-def test_discs_lie_in_the_middle_plane():
-    x = random_positions((30.0, 2.0, 30.0), np.ones(200), np.random.default_rng(2), planar=True)
-    assert (x[:, 1] == 1.0).all()
-    assert shortest(x, np.full(3, 30.0), (False,) * 3) >= 1.0
-
-
-def test_points_need_no_room():
-    x = random_positions((1.0, 1.0, 1.0), np.zeros(5000), np.random.default_rng(3))
-    assert x.shape == (5000, 3)
-
-
-def test_a_lid_keeps_all_molecules_below_it():
-    x = random_positions((6.0, 6.0, 20.0), np.ones(50), np.random.default_rng(4), top=5.0)
-    assert x[:, 2].max() <= 4.5
-
-
 def test_points_thin_out_with_height_as_an_isothermal_atmosphere():
     number, height, scale = 40_000, 3.0, 1.0
     x = random_positions((1.0, 1.0, height), np.zeros(number), np.random.default_rng(6), scale_height=scale)

@@ -42,48 +42,16 @@ def test_steps_change_at_their_times_and_hold_between():
     assert kT_at(steps, times) == [1.0, 1.0, 1.0, 2.0, 2.0, 4.0, 4.0]
 
 
-def test_steps_may_be_given_as_arrays():
-    assert Steps(np.array([0.0, 5.0]), np.array([1.0, 2.0])).points() == [(0.0, 1.0), (5.0, 1.0), (5.0, 2.0)]
-
-
 def test_a_schedule_of_somebodys_own_is_a_polygon_too():
     times = [0.0, 1.0, 1.25, 2.0, 3.0, 4.0, 9.0]
     corner_times, values = zip(*Zigzag().points(), strict=True)
     assert kT_at(Zigzag(), times) == pytest.approx(np.interp(times, corner_times, values))
 
 
-def test_each_wall_follows_its_own_schedule():
-    baths = [HeatBath(1.0), HeatBath(Ramp(1.0, 2.0, start=0.0, end=4.0)), HeatBath(Zigzag())]
-    walls = new_walls((Specular(), *baths, Specular(), Specular()), 1.0)
-    assert [float(wall_kT(walls, wall, 2.0)) for wall in (1, 2, 3)] == [1.0, 1.5, 3.0]
-
-
 def test_an_impossible_temperature_is_refused():
-    cases = [
-        0.0,
-        -1.0,
-        math.nan,
-        math.inf,
-        "warm",
-        None,
-        [1.0, 2.0],
-        Constant(-1.0),
-        Ramp(1.0, 0.0, start=0.0, end=1.0),
-        Ramp(1.0, 2.0, start=1.0, end=1.0),
-        Ramp(1.0, 2.0, start=0.0, end=math.nan),
-        Ramp(1.0, 2.0, start=-math.inf, end=1.0),
-        Steps([], []),
-        Steps([0.0, 1.0], [1.0]),
-        Steps([0.0, 0.0], [1.0, 2.0]),
-        Steps([0.0, math.nan], [1.0, 2.0]),
-        Steps([1.0, 0.0], [1.0, 2.0]),
-        Zigzag(()),
-        Zigzag(((1.0, 1.0), (0.0, 2.0))),
-    ]
+    cases = [0.0, math.nan, "warm", None, [1.0, 2.0], Constant(-1.0), Ramp(1.0, 0.0, start=0.0, end=1.0)]
+    cases += [Ramp(1.0, 2.0, start=1.0, end=1.0), Ramp(1.0, 2.0, start=0.0, end=math.nan), Steps([], [])]
+    cases += [Steps([0.0, 1.0], [1.0]), Steps([0.0, 0.0], [1.0, 2.0]), Steps([1.0, 0.0], [1.0, 2.0]), Zigzag(())]
     for value in cases:
         with pytest.raises(RefusedError):
             as_schedule(value, "kT of wall z_low")
-
-
-def test_what_may_be_negative_may_be():
-    assert as_schedule(-3.0, "velocity", positive=False) == [(0.0, -3.0)]

@@ -70,8 +70,7 @@ def test_a_heat_bath_emits_tangential_velocities_as_gaussian(diatomic):
 
 
 @pytest.mark.parametrize(
-    ("rotation", "planar", "energy"),
-    [(0.0, False, 2.0), (2.0, False, 3.0), (3.0, False, 3.5), (0.0, True, 1.5)],
+    ("rotation", "planar", "energy"), [(0.0, False, 2.0), (2.0, False, 3.0), (3.0, False, 3.5), (0.0, True, 1.5)]
 )
 def test_emitted_molecules_carry_the_energy_of_a_flux(rotation, planar, energy):
     # per kT: 1 in the normal velocity, 1/2 in each tangential one and each degree of freedom of rotation; the sum of as
@@ -112,11 +111,3 @@ def test_a_piston_reflects_in_its_own_frame():
         after = emitted(Piston(velocity), wall=5, number=1)[0]
         assert after.tolist() == [-3.0 + 2.0 * velocity, 0.25, 0.5, 7.0]
         assert after[0] - velocity == -(3.0 - velocity)
-
-
-def test_walls_without_chance_draw_no_number():
-    state = random_state()
-    before = state.copy()
-    for law, wall in ((Specular(), 0), (Piston(0.1), 5)):
-        resolve_wall_hit(wall, 0.0, (1.0, 0.0, 0.0), 0.0, (MASS, 0.0), walls_with(law, wall), False, state)
-    assert (state == before).all()

@@ -152,14 +152,6 @@ def test_the_heat_of_the_bath_is_in_the_ledger_and_it_keeps_its_temperature():
     assert np.mean(kinetic) == pytest.approx(1.5 * 200, abs=4.0 * error)
 
 
-def test_clocks_stay_small_in_a_long_run_without_a_change_of_what_happens():
-    box = gas(40, 0.05, 1.0, bath=0.5)
-    box.advance(17_000.0)
-    assert float(box._walls.epoch[0]) > 0.0
-    assert box.ledger() < 1e-12
-    assert set(map(tuple, box.pairs().tolist())) == near(box)
-
-
 def test_strength_and_gravity_may_change_and_the_ledger_has_it():
     box = gas(200, 0.3, 1.0)
     box.advance(5.0)
@@ -174,27 +166,3 @@ def test_strength_and_gravity_may_change_and_the_ledger_has_it():
     box.set_strength(1.0)
     box.advance(20.0)
     assert box.ledger() < 1e-12
-
-
-@pytest.mark.nightly
-def test_gravity_may_be_switched_on_and_pulls_the_liquid_down():
-    random = np.random.default_rng(4)
-    position = random_positions((8, 8, 8), np.ones(100), random)
-    box = AttractingParcelSet(position, random.normal(size=(100, 3)), length=(8, 8, 8), well=SquareWell())
-    box.advance(5.0)
-    box.set_gravity(1.0)
-    assert box.ledger() < 1e-14
-    before = box.snapshot().position[:, 2].mean()
-    box.advance(15.0)
-    assert box.snapshot().position[:, 2].mean() < 0.8 * before
-    assert box.ledger() < 1e-12
-
-
-def test_two_molecules_that_orbit_in_a_well_stay_there():
-    pair = AttractingParcelSet(
-        [[4.4, 5, 5], [5.6, 5, 5]], [[0, 0.3, 0.1], [0, -0.3, -0.1]], length=(10,) * 3, walls=ROUND, well=SquareWell()
-    )
-    pair.advance(1000.0)
-    assert pair.number_of_wells == 1
-    assert pair.well_events["bounces"] > 100
-    assert pair.ledger() < 1e-12

@@ -8,7 +8,6 @@ from atmosbox.errors import SettingError
 from atmosbox.file.molecules import molecules
 from atmosbox.scene.instruments.condensate import drops_of
 from atmosbox.simulation import runner
-from atmosbox.simulation.preparation import build
 
 HARD = {"attraction": 0.0}
 
@@ -29,21 +28,6 @@ def test_a_drop_forms_from_vapour_and_none_without_attraction():
     assert outcome.ledger < 1e-12
 
 
-def test_a_drop_and_a_gas_state_their_temperature_and_pressure_beside_theory():
-    for settings in ({"duration": "0.8 ns"}, {"duration": "0.2 ns", **HARD}):
-        data, found, _ = run(molecules=400, **settings)
-        counts = ["last_largest_drop_molecule_count", "last_vapor_molecule_count"]
-        assert list(found) == [*counts, "mean_temperature", "mean_virial_pressure"]
-        # clusters in the gas are rare: their number has no error bar
-        assert (found["last_vapor_molecule_count"].standard_error > 0.0) == (settings.get("attraction") != 0.0)
-        for name in ("mean_temperature", "mean_virial_pressure"):
-            assert found[name].agrees
-            assert 0.0 < found[name].standard_error < 0.1 * found[name].value
-            assert found[name].tolerance < 0.15 * found[name].theory
-        drawn = data.virial_pressure_theory.values[data.sizes["elapsed_time"] // 2 :].mean()
-        assert drawn == pytest.approx(found["mean_virial_pressure"].theory, rel=0.02)  # the curve beside the number
-
-
 def test_without_a_bath_motion_gains_what_attraction_loses():
     data, *_ = run(molecules=300, duration="0.2 ns", bath="none")
     lost = data.attraction_energy[0] - data.attraction_energy
@@ -52,12 +36,6 @@ def test_without_a_bath_motion_gains_what_attraction_loses():
     np.testing.assert_allclose(gained[1:], lost[1:], rtol=1e-9)
     assert np.ptp(data.molecular_energy.values) < 1e-12 * float(data.kinetic_energy[0])
     assert "heat_from_bath" not in data
-
-
-def test_the_heat_of_the_bath_is_what_becomes_of_the_energy():
-    data, *_ = run(molecules=300, duration="0.2 ns")
-    change = (data.molecular_energy - data.heat_from_bath).values
-    assert np.ptp(change) < 1e-12 * float(np.abs(data.heat_from_bath).max() + data.kinetic_energy[0])
 
 
 def test_a_heated_drop_evaporates_before_it_becomes_much_warmer():
@@ -77,17 +55,6 @@ def test_a_heated_drop_evaporates_before_it_becomes_much_warmer():
     assert capacity.standard_error < 0.2 * capacity.theory
     # 6.2 kJ/mol with flat surfaces at 111 K; the surface of a drop shrinks, which makes it less
     assert 4000.0 < found["latent_heat"].value < 6500.0
-
-
-def test_a_gas_has_the_pressure_of_its_virial_coefficients():
-    _, found, _ = run(molecules=300, density=0.06, temperature="180 K", duration="4 ns")
-    pressure = found["mean_virial_pressure"]
-    assert pressure.agrees
-    assert pressure.standard_error < 0.02 * pressure.value
-    density = 0.06 * theory.WELL_CRITICAL_DENSITY
-    ideal = density * 180.0 / theory.SIMPLE_FLUIDS["argon"].well_depth * 1.380649e-23
-    ideal *= theory.SIMPLE_FLUIDS["argon"].well_depth / theory.SIMPLE_FLUIDS["argon"].well_diameter ** 3
-    assert ideal - pressure.value > 3.0 * pressure.standard_error  # the effect of attraction is visible
 
 
 @pytest.mark.nightly
@@ -125,19 +92,6 @@ def test_molecules_that_are_kept_tell_their_neighbours_and_the_drop_is_in_the_mi
     assert np.abs(inner.mean(axis=0) / seen.side[-1] - 0.5).max() < 0.03
     away = np.linalg.norm(inner - 0.5 * seen.side[-1], axis=1)
     assert away.max() < 0.45 * seen.side[-1].min()
-
-
-def test_the_knobs_of_the_live_page_boil_the_drop_and_the_ledger_has_it():
-    setup = build(runner.prepare("attraction", {"start": "drop", "density": 0.1, "molecules": 200}))
-    parcel, knobs = setup.parcel, {knob.name: knob for knob in setup.knobs}
-    parcel.advance(5.0)
-    held = parcel.number_of_wells
-    knobs["attraction"].set(0.2)
-    knobs["temperature"].set(150.0)
-    parcel.advance(60.0)
-    assert parcel.number_of_wells < 0.3 * held
-    assert parcel.attraction_work > 0.0
-    assert parcel.ledger() < 1e-12
 
 
 def test_two_touching_clusters_are_one_drop_and_a_pair_is_vapour():

@@ -56,37 +56,6 @@ def test_free_convection_waits_for_the_cloud_base():
     assert theory.cape_cin(*warm, 0.0).lfc is None
 
 
-def test_levels_put_into_straight_lines_change_nothing():
-    p, around, parcel = sounding(-1.0, 1.0, 3.0, 1.0, -1.0, -3.0)
-    fine = np.geomspace(p[0], p[-1], 251)
-    lines = [np.interp(np.log(fine), np.log(p[::-1]), t[::-1]) for t in (around, parcel)]
-    coarse, dense = theory.cape_cin(p, around, parcel, float(at(0.8))), theory.cape_cin(fine, *lines, float(at(0.8)))
-    assert np.allclose(coarse, dense, rtol=1e-10)
-
-
-def test_metpys_six_levels():
-    import metpy.calc
-    from metpy.units import units
-
-    p = np.array([959.0, 779.2, 751.3, 724.3, 700.0, 269.0]) * units.hPa
-    t = np.array([22.2, 14.6, 12.0, 9.4, 7.0, -38.0]) * units.degC
-    td = np.array([19.0, -11.2, -10.8, -10.4, -10.0, -53.2]) * units.degC
-    lifted = metpy.calc.parcel_profile(p, t[0], td[0])
-    cape, cin = (float(x.m_as("J/kg")) for x in metpy.calc.cape_cin(p, t, td, lifted))
-    assert cape == pytest.approx(223.93, abs=0.05)
-    assert cin < -10.0
-
-    pressure = p.m_as("Pa")
-    vapor = theory.mixing_ratio(theory.saturation_vapor_pressure(td.m_as("K")), pressure)
-    around = theory.virtual_temperature(t.m_as("K"), vapor)
-    base = float(theory.lcl(pressure[0], t[0].m_as("K"), td[0].m_as("K"))[0])
-    curve = lifted.m_as("K")
-    held = np.where(pressure > base, vapor[0], theory.saturation_mixing_ratio(pressure, curve))
-    energy = theory.cape_cin(pressure, around, theory.virtual_temperature(curve, held), base)
-    assert energy.cape == pytest.approx(cape, rel=0.01)
-    assert energy.cin == pytest.approx(cin, rel=0.01)
-
-
 def test_a_tropical_sounding_of_many_levels_as_metpy_has_it():
     import metpy.calc
     from metpy.units import units
@@ -115,10 +84,6 @@ def test_cloud_water_weighs_on_the_parcel():
     around = light - np.array([0.0, 0.5, 3.0, 4.0, 3.0, -1.0])
     loaded, free = theory.cape_cin(LEVELS, around, heavy), theory.cape_cin(LEVELS, around, light)
     assert 0.0 < loaded.cape < free.cape
-
-
-def test_buoyancy_is_gravity_times_the_share_of_lightness():
-    assert np.allclose(theory.parcel_buoyancy([303.0, 297.0], 300.0, 10.0), [0.1, -0.1], rtol=1e-13)
 
 
 def test_a_broken_sounding_is_refused_with_a_sentence():

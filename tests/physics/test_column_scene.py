@@ -4,15 +4,11 @@ Means allow 4 standard errors from 20 blocks: a false alarm once in 1 500 per co
 some 90 here), and never for these.
 """
 
-import json
 import math
 
 import numpy as np
 import pytest
 
-from atmosbox.engine import ParcelSet
-from atmosbox.scene import engines
-from atmosbox.scene.engines import engine_choice
 from atmosbox.scene.statistics import block_average
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -20,19 +16,6 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 def run(**settings):
     return runner.execute(runner.prepare("atmosphere", settings), command="atmosbox run atmosphere")
-
-
-def facts(engine=engines.EXACT, **settings):
-    prepared = runner.prepare("atmosphere", settings)
-    return prepared.module.build(prepared.settings, engine).facts
-
-
-@pytest.fixture
-def ideal(monkeypatch):
-    """Return an engine that declares that its molecules have no excluded volume."""
-    each = engines.Engine("roomless", "molecules without volume", lambda: ParcelSet, ideal=True)
-    monkeypatch.setattr(engine_choice, "ENGINES", {**engines.ENGINES, each.name: each})
-    return engines.EngineChoice(each)
 
 
 @pytest.mark.parametrize(("floor", "start"), [("heat-bath", "equilibrium"), ("isolated", "bottom")])
@@ -54,17 +37,6 @@ def test_a_plane_column_stands_presses_and_warms_as_hydrostatics_of_discs_say(fl
     if floor == "heat-bath":
         assert abs(pressure - 101_325.0) <= 4.0 * error + 0.005 * pressure
         assert error < 0.005 * pressure
-
-
-def test_the_facts_of_a_plane_column_are_those_of_discs():
-    plane, space = facts(plane=True), facts()
-    assert plane["gamma"].startswith("2:")
-    assert space["gamma"].startswith("5/3:")
-    assert plane["exaggeration"].startswith("discs 0.9 m wide")
-    assert "slab 8.43 km thick" in plane["box"]
-    # the same number of molecules represents the same amount of air
-    assert plane["real molecules per simulated one"] == space["real molecules per simulated one"]
-    assert plane["scale height"] == space["scale height"]
 
 
 def test_the_barometric_law_is_that_of_the_textbook():
@@ -101,34 +73,6 @@ def test_the_mean_height_is_that_of_the_closed_form_however_high_the_column(corn
     assert stated.theory == pytest.approx(radius + closed(si.height - 2.0 * radius), rel=1e-12)
 
 
-@pytest.mark.parametrize("plane", [False, True])
-def test_the_theory_of_molecules_without_volume_is_barometric(ideal, plane):
-    settings = {"plane": plane, "molecules": 300, "knudsen": 0.05, "duration": 1.0, "start": "equilibrium"}
-    prepared = runner.prepare("atmosphere", settings)
-    hard = run(**settings).dataset
-    parameters = json.loads(hard.attrs["atmosbox_parameters"]) | {"engine": str(ideal)}
-    roomless = hard.assign_attrs(atmosbox_parameters=json.dumps(parameters))
-    theory = [prepared.module.theory(dataset, prepared.settings) for dataset in (hard, roomless)]
-    # layers between the walls follow the exponential; only half a diameter at each wall has no centres
-    scale_height = BOLTZMANN * 288.15 / (DRY_AIR.molecule_mass * 9.80665)
-    radius = 0.5 * prepared.module.Column(prepared.settings).diameter * scale_height
-    edges = np.clip(np.append(hard.height_bnds[:, 0], hard.height_bnds[-1, 1]), radius, 25e3 - radius)
-    above = np.exp(-edges / scale_height)
-    share = -np.diff(above) / (above[0] - above[-1])
-    for name in ("number_density", "layer_pressure"):
-        found = theory[1][f"{name}_theory"]
-        assert np.allclose(found / found.sum(), share, rtol=1e-11, atol=0.0)
-        assert np.array_equal(theory[0][f"{name}_barometric"], theory[1][f"{name}_barometric"])
-        assert np.abs(theory[0][f"{name}_theory"] / found - 1.0).max() > 0.05
-    heights = [
-        next(each.theory for each in prepared.module.headlines(dataset, prepared.settings) if each.unit == "m")
-        for dataset in (hard, roomless)
-    ]
-    assert heights[1] < 0.99 * heights[0]
-    assert "without excluded volume" in facts(ideal, **settings)["exaggeration"]
-    assert "excluded volume" not in facts(**settings)["exaggeration"]
-
-
 def test_a_column_that_starts_uniform_falls_warms_and_comes_to_the_profile_of_equilibrium():
     """Measured in eight runs: the mean height of the air, and its temperature, before and after it has settled."""
     settings = {"molecules": 400, "duration": 200.0, "engine": "dsmc"}
@@ -155,10 +99,3 @@ def test_a_column_that_starts_uniform_falls_warms_and_comes_to_the_profile_of_eq
     error = mean.std(axis=0, ddof=1) / math.sqrt(len(outcomes))
     assert (np.abs(mean.mean(axis=0)) <= 4.0 * error).all()
     assert (error < [0.9, 40.0]).all()
-
-
-def test_a_run_too_short_to_settle_has_no_headlines():
-    assert run(molecules=60, duration=5.0).headlines == ()
-    # so few molecules tell all but the scale height, which they know worse than to a tenth
-    known = {each.name for each in run(molecules=60, duration=5.0, start="equilibrium").headlines}
-    assert known == {"mean_surface_pressure", "weight_of_the_air", "mean_temperature", "mean_height"}

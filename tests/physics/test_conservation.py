@@ -1,4 +1,4 @@
-"""Conservation at contacts, walls and pistons: energy, momentum, the ledger; and no molecule overlaps or escapes.
+"""Conservation at contacts, walls and pistons: energy, momentum, and the energy budget.
 
 These are identities of every single run, to rounding: nothing here is statistical.
 """
@@ -6,10 +6,9 @@ These are identities of every single run, to rounding: nothing here is statistic
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, Periodic, Piston, Specular
-from atmosbox.engine.core.measure import momentum
+from atmosbox.engine import HeatBath, Periodic, Piston
 
-S, P = Specular(), Periodic()
+P = Periodic()
 
 
 @pytest.mark.parametrize("contacts", [3e5, pytest.param(1e7, marks=pytest.mark.nightly)])
@@ -23,12 +22,10 @@ def test_energy_is_kept_to_rounding_with_gravity_and_walls(gas, contacts):
     assert box.wall_hits.min() > 100
 
 
-@pytest.mark.parametrize("gravity", [0.0, 0.05])
-def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
-    # with gravity there are two kinds of molecules: for both, other tests have the kernels
-    mass = [1.0, 1.5] * 150 if gravity else 1.0
+def test_the_energy_budget_closes_with_heat_baths_a_piston_and_rotation(gas):
+    mass = [1.0, 1.5] * 150
     walls = (HeatBath(1.5), HeatBath(0.7), P, P, HeatBath(1.0, 0.5), Piston())
-    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=gravity, diameter=0.8, mass=mass, seed=2)
+    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=0.05, diameter=0.8, mass=mass, seed=2)
     exchanged = 0.0
     for stroke in range(20):
         box.set_piston_velocity(-0.1 if stroke % 2 else 0.1)
@@ -40,53 +37,6 @@ def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
     assert exchanged > 5.0 * sum(box.energy())
     assert box.wall_hits[5] > 1000
     assert box.contacts > 50_000
-
-
-BOXES = {
-    "walls and gravity": {"number": 191, "length": (10.0, 10.0, 10.0), "gravity": 0.3},
-    "periodic and dense": {"number": 400, "length": (8.2, 8.2, 8.2), "walls": (P,) * 6, "duration": 8.0},
-    "periodic, as small as it may be": {"number": 5, "length": (2.4, 2.4, 2.4), "walls": (P,) * 6},
-    "periodic along two axes": {
-        "number": 300,
-        "length": (10.0, 10.0, 12.0),
-        "walls": (P, P, P, P, S, S),
-        "gravity": 0.3,
-    },
-    "three sizes and masses": {
-        "number": 150,
-        "length": (14.0, 14.0, 14.0),
-        "diameter": np.repeat([0.4, 1.0, 4.0], [100, 40, 10]),
-        "mass": np.repeat([0.1, 1.0, 30.0], [100, 40, 10]),
-    },
-    "heat baths": {"number": 191, "length": (10.0, 10.0, 10.0), "walls": (HeatBath(4.0), HeatBath(1.0), S, S, S, S)},
-    "a plane": {"number": 200, "length": (20.0, 1.0, 20.0), "planar": True, "gravity": 0.1},
-}
-
-
-@pytest.mark.parametrize("name", BOXES)
-def test_nothing_overlaps_or_escapes_at_any_time(gas, out_of_place, name):
-    options = dict(BOXES[name])
-    duration = options.pop("duration", 60.0)
-    box = gas(options.pop("number"), options.pop("length"), seed=3, **options)
-    # at times that do not coincide with events: multiples of the golden ratio
-    for k in range(1, 61):
-        box.advance(duration * (k - 1 + (0.6180339887498949 * k) % 1.0) / 60.0)
-        outside, overlap = out_of_place(box)
-        assert outside <= 1e-9
-        assert overlap <= 1e-9
-    assert box.contacts > 10 * box.number
-
-
-def test_momentum_stays_in_a_periodic_box(gas):
-    drift = np.array([0.3, -0.2, 0.1])
-    still = {"number": 300, "length": (10.0, 10.0, 10.0), "walls": (P,) * 6, "seed": 5}
-    box = gas(**still, velocity=gas(**still).snapshot().velocity + drift)
-    before = momentum(box, box.snapshot())
-    assert before == pytest.approx(300 * drift, rel=1e-12)
-    for _ in range(10):
-        box.advance(box.time + 25.0)
-        assert np.abs(momentum(box, box.snapshot()) - before).max() <= 1e-12 * 300
-    assert box.contacts > 100_000
 
 
 def scattered_pairs():

@@ -10,11 +10,11 @@ import pytest
 from scipy import stats
 
 from atmosbox import theory
-from atmosbox.engine import HeatBath, Periodic, Ramp, Specular, Steps
+from atmosbox.engine import HeatBath, Periodic, Piston, Ramp, Specular
 from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
-from tests.oracle import kinetic_gas
+from tests.physics.conftest import EVERYTHING
 
-S, P = Specular(), Periodic()
+P = Periodic()
 
 
 def averages(box, warm_up, step, samples, measure):
@@ -36,7 +36,9 @@ def energies(box):
 def test_walls_give_a_gas_their_temperature_whatever_share_they_take_in(gas, accommodation):
     kT = 1.3
     walls = (HeatBath(kT, accommodation),) * 6
-    box = gas(300, (11.0,) * 3, walls=walls, kT=2.0, spin_kT=0.5, rotation=2, collision_number=math.inf, seed=31)
+    walls = (*walls[:5], Piston())
+    facts = {"rotation": 2, "collision_number": math.inf, "gravity": EVERYTHING["gravity"]}
+    box = gas(300, (11.0,) * 3, walls=(P, P, *walls[2:]), kT=2.0, spin_kT=0.5, seed=31, **facts)
     mean, error = averages(box, 200.0, 5.0, 2000, energies)
     assert (error / kT < 0.005).all()
     # without contacts that exchange it, each kind of energy comes from the walls alone
@@ -45,26 +47,9 @@ def test_walls_give_a_gas_their_temperature_whatever_share_they_take_in(gas, acc
     assert box.ledger() <= 1e-10
 
 
-def test_the_heat_that_walls_give_and_take_in_equilibrium_is_none_on_average(gas):
-    number, kT = 300, 1.0
-    box = gas(number, (11.0,) * 3, walls=(HeatBath(kT),) * 6, seed=32)
-    box.advance(100.0)
-    heat = []
-    hits = box.wall_hits
-    for _ in range(20):
-        before = box.wall_heat
-        box.advance(box.time + 100.0)
-        heat.append(box.wall_heat - before)
-    mean, error = block_average(np.array(heat))
-    assert (np.abs(mean) <= 4.0 * error).all()
-    # each hit exchanges 2 kT; at random, that would be the scatter, and what is given is soon given back
-    per_block = kinetic_gas.heat_noise((box.wall_hits - hits) / 20.0, kT)
-    assert (error * math.sqrt(20.0) < 1.5 * per_block).all()
-
-
 def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
     number, kT, layers = 2000, 0.7, 10
-    box = gas(number, (10.0, 8.0, 10.0), walls=(HeatBath(kT),) * 6, diameter=0.0, kT=2.0, seed=33)
+    box = gas(number, (10.0, 8.0, 10.0), walls=(HeatBath(kT),) * 6, diameter=1e-3, kT=2.0, seed=33)
     box.advance(200.0)
     counts, velocity = [], []
     for k in range(1000):
@@ -81,7 +66,6 @@ def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
     speed = np.sqrt(np.sum(np.concatenate(velocity) ** 2, axis=1))
     distance = stats.kstest(speed, lambda v: theory.maxwell_speed_cumulative(v, kT, 1.0)).statistic
     assert distance < kolmogorov_smirnov_critical(speed.size, 1e-4)
-    assert box.contacts == 0
 
 
 @pytest.mark.parametrize(
@@ -90,8 +74,9 @@ def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
 )
 def test_a_very_thin_gas_between_two_walls_carries_the_heat_that_knudsen_found(gas, hot, accommodation, rotation):
     number, cold = 1000, 1.0
-    walls = (HeatBath(hot, accommodation), HeatBath(cold, accommodation), P, P, P, P)
-    box = gas(number, (10.0,) * 3, walls=walls, diameter=0.0, kT=math.sqrt(hot * cold), rotation=rotation, seed=34)
+    walls = (HeatBath(hot, accommodation), HeatBath(cold, accommodation), P, P, Specular(), Piston())
+    facts = {"diameter": 1e-3, "rotation": rotation, "gravity": EVERYTHING["gravity"]}
+    box = gas(number, (10.0,) * 3, walls=walls, kT=math.sqrt(hot * cold), seed=34, **facts)
     truth = theory.free_molecular_slab(hot, cold, number / 1000.0, 1.0, rotation)
     # walls that accommodate a share a of all molecules pass on a / (2 - a) of the heat
     passed = accommodation / (2.0 - accommodation)
@@ -110,22 +95,9 @@ def test_a_very_thin_gas_between_two_walls_carries_the_heat_that_knudsen_found(g
     assert (np.abs(mean - exact) <= 4.0 * error).all()
 
 
-def test_a_very_thin_gas_between_two_walls_has_the_geometric_mean_temperature(gas):
-    number = 1000
-    walls = (HeatBath(4.0), HeatBath(1.0), P, P, P, P)
-    box = gas(number, (10.0,) * 3, walls=walls, diameter=0.0, kT=2.0, rotation=2, seed=35)
-    mean, error = averages(box, 100.0, 3.0, 2000, lambda b: b.energy()[0] / (1.5 * number))
-    assert error < 0.01
-    assert abs(mean - 2.0) <= 4.0 * error
-    # a component along the slab and one across it
-    mean, error = averages(box, box.time, 3.0, 1000, lambda b: np.mean(b.snapshot().velocity ** 2, axis=0))
-    assert (np.abs(mean - 2.0) <= 4.0 * error).all()
-
-
 def test_a_gas_follows_the_temperature_of_its_walls(gas):
     number = 300
     ramp = Ramp(1.0, 2.0, start=100.0, end=1100.0)
-    steps = Steps([0.0, 1500.0], [1.0, 0.5])
     box = gas(number, (10.0,) * 3, walls=(HeatBath(ramp),) * 6, diameter=0.8, seed=36)
     # half-way up the gas lags behind by less than a relaxation time of about ten
     for time, expected in ((50.0, 1.0), (600.0, 1.5), (1200.0, 2.0)):
@@ -142,25 +114,3 @@ def test_a_gas_follows_the_temperature_of_its_walls(gas):
         assert abs(mean - drift - expected) <= 4.0 * error + 0.02 * (expected == 1.5)
     gained = sum(box.energy()) - 1.5 * number
     assert box.wall_heat.sum() == pytest.approx(gained, rel=1e-9)
-    box = gas(number, (10.0,) * 3, walls=(HeatBath(steps),) * 6, diameter=0.8, seed=36)
-    box.advance(1499.0)
-    assert (box.wall_kT() == 1.0).all()
-    box.advance(1501.0)
-    assert (box.wall_kT() == 0.5).all()
-    mean, error = averages(box, 1600.0, 5.0, 400, energies)
-    assert abs(mean[0] - 0.75) <= 4.0 * error[0]
-
-
-@pytest.mark.parametrize("diameter", [0.0, 1.0])
-def test_heat_baths_of_a_plane_gas_give_each_molecule_kT(gas, diameter):
-    number, kT = 200, 1.4
-    walls = (HeatBath(kT), HeatBath(kT), S, S, HeatBath(kT), HeatBath(kT))
-    box = gas(number, (25.0, 1.0, 25.0), walls=walls, diameter=diameter, planar=True, seed=38)
-    mean, error = averages(box, 300.0, 15.0, 2000, energies)
-    assert error[0] / kT < 0.005
-    assert abs(mean[0] - kT) <= 4.0 * error[0]
-    here = box.snapshot()
-    assert (here.velocity[:, 1] == 0.0).all()
-    assert (here.position[:, 1] == 0.5).all()
-    assert box.wall_hits[[0, 1, 4, 5]].min() > 1000
-    assert box.wall_hits[[2, 3]].max() == 0

@@ -85,20 +85,6 @@ def test_the_speeds_of_discs_are_rayleighs(gas):
     assert temperature(box, box.snapshot()) == pytest.approx(1.0, rel=1e-12)
 
 
-@pytest.mark.parametrize("gravity", [0.0, 0.05])
-def test_nothing_ever_leaves_the_plane(gas, gravity):
-    box = gas(300, (30.0, 2.0, 30.0), planar=True, gravity=gravity, seed=73)
-    before = sum(box.energy())
-    box.advance(300.0)
-    here = box.snapshot()
-    assert box.contacts > 10_000
-    assert (here.position[:, 1] == 1.0).all()
-    assert (here.velocity[:, 1] == 0.0).all()
-    assert box.wall_hits[2:4].max() == 0
-    assert box.volume == pytest.approx(900.0)
-    assert sum(box.energy()) == pytest.approx(before, rel=1e-12)
-
-
 def test_the_energy_of_half_of_the_discs_scatters_as_their_card_says():
     prepared = runner.prepare("elastic-collisions", {"duration": "300 s"})
     (told,) = re.findall(r"scatters by (\d+) %", dict(runner.card(prepared).facts)["noise"])

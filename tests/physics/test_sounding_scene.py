@@ -5,10 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from atmosbox import scenarios, theory
-from atmosbox.cli import app
 from atmosbox.scene import sounding
 from atmosbox.simulation import runner
 from atmosbox.simulation.verification import verify
@@ -121,38 +119,3 @@ def test_moist_air_below_cold_air_is_unstable(tmp_path):
     rows = {each.name: each for each in module._metpy(settings)}
     assert rows["metpy_cape"].value == metpy.cape
     assert rows["metpy_cape"].theory == pytest.approx(metpy.cape, rel=0.05)
-
-
-def test_an_ascent_ends_where_its_sounding_does(tmp_path):
-    path = csv(tmp_path / "short.csv", LOADED, [t - 5.0 for t in LOADED])
-    found = outcome(sounding=path, top_pressure=100.0)
-    assert 245e2 < found.dataset.environment_pressure.values[-1] < 260e2
-
-
-@pytest.mark.parametrize(
-    ("content", "complaint"),
-    [
-        ("pressure [hPa],temperature [degC],dewpoint [degC]\n1000,20,10\n900,15,25\n", "line 3"),
-        ("pressure [hPa],temperature [degC],dewpoint [degC]\n1000,20,10\n900,15,5\n", "five levels"),
-        ("", "empty"),
-    ],
-)
-def test_a_broken_file_gets_one_sentence_and_exit_2(tmp_path, monkeypatch, content, complaint):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "broken.csv").write_text(content, encoding="utf-8")
-    result = CliRunner().invoke(app, ["run", SCENE, "--set", "sounding=broken.csv"])
-    assert result.exit_code == 2
-    assert complaint in result.stderr.replace("5 levels", "five levels")
-    assert "Traceback" not in result.stderr
-    assert not (tmp_path / f"{SCENE}.nc").exists()
-
-
-def test_a_top_below_the_ground_is_refused(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    path = csv(tmp_path / "high.csv", LOADED, [t - 5.0 for t in LOADED])
-    text = (tmp_path / "high.csv").read_text(encoding="utf-8").splitlines()
-    (tmp_path / "high.csv").write_text("\n".join([text[0], *text[3:]]) + "\n", encoding="utf-8")
-    result = CliRunner().invoke(app, ["run", SCENE, "--set", f"sounding={path}", "--set", "top_pressure=880hPa"])
-    assert result.exit_code == 2
-    assert "top_pressure" in result.stderr
-    assert "give --set top_pressure=" in result.stderr

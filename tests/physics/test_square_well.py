@@ -7,19 +7,8 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine import (
-    AttractingParcelSet,
-    HeatBath,
-    Periodic,
-    RandomBath,
-    Specular,
-    SquareWell,
-    lattice_positions,
-    random_positions,
-)
+from atmosbox.engine import AttractingParcelSet, HeatBath, Periodic, RandomBath, Specular, SquareWell, random_positions
 from atmosbox.scene.statistics import block_average
-from atmosbox.simulation import runner
-from atmosbox.theory.constants import BOLTZMANN
 from tests.oracle.well_energy import square_well_energy
 
 ROUND = (Periodic(),) * 6
@@ -57,11 +46,6 @@ def test_virial_coefficients_are_the_integrals_of_mayer(range_):
     assert float(theory.square_well_third_virial(kT, range_)) == pytest.approx(product.mean(), abs=4.0 * error)
 
 
-def test_in_a_very_thin_gas_a_molecule_has_as_many_partners_as_boltzmann_says():
-    volume = 4.0 * np.pi / 3.0 * (1.5**3 - 1.0)
-    assert square_well_energy(1e-9, 1.0) == pytest.approx(-0.5 * 1e-9 * volume * np.e, rel=1e-6)
-
-
 @pytest.mark.parametrize(
     ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.nightly) for kT in (1.0, 1.5, 2.0, 3.0))]
 )
@@ -90,61 +74,6 @@ def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
     assert factor.standard_error < 2.5e-3
     assert abs(factor.mean - theory.square_well_compressibility(density, kT)) < 4.0 * factor.standard_error
     assert abs(energy.mean - square_well_energy(density, kT)) < 4.0 * energy.standard_error
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("kelvin", [123.8, 136.2])
-def test_liquid_and_vapour_without_a_surface_are_those_of_a_slab(kelvin):
-    """At T* of 1.0 and 1.1: the vapour by its pressure, the liquid by its density, both by their energy.
-
-    The middle of a slab is up to 1 % thinner than a liquid without surface: its surfaces are a third of it, and reach
-    inwards.
-    """
-    settings = {"start": "slab", "density": 1.0, "temperature": f"{kelvin} K", "duration": "8 ns"}
-    outcome = runner.execute(runner.prepare("attraction", settings))
-    slab = {headline.name: headline for headline in outcome.headlines}
-    fluid = theory.SIMPLE_FLUIDS["argon"]
-    unit, kT = fluid.molecule_mass / fluid.well_diameter**3, kelvin * BOLTZMANN / fluid.well_depth
-    late = outcome.dataset.isel(elapsed_time=slice(50, None))
-
-    def still(density):
-        """Return pressure and energy of a molecule in a cube of this density, each with its error."""
-        number = 500
-        side = (number / density) ** (1.0 / 3.0)
-        random = np.random.default_rng(5)
-        box = AttractingParcelSet(
-            lattice_positions((side,) * 3, np.ones(number), periodic=(True,) * 3),
-            random.normal(size=(number, 3)) * math.sqrt(kT), length=(side,) * 3, walls=ROUND, well=SquareWell(),
-            bath=RandomBath(kT, 1.0), seed=5,
-        )  # fmt: skip
-        box.advance(30.0)
-        sums, wells = [box.virial.sum()], []
-        for look in range(1200):
-            box.advance(30.0 + 0.5 * (look + 1))
-            sums.append(box.virial.sum())
-            wells.append(box.number_of_wells)
-        press = block_average(density * (kT + np.diff(sums) / (1.5 * number)), 24)
-        return (*press, *block_average(-np.array(wells) / number, 24))
-
-    thin, dense = (slab[name].value / unit for name in ("vapor_density", "liquid_density"))
-    bar = fluid.well_depth / fluid.well_diameter**3
-    pressure, pressure_se = (getattr(slab["vapor_pressure"], each) / bar for each in ("value", "standard_error"))
-    press, press_se, energy, energy_se = still(thin)
-    # the relative error of the pressure is at most half of that of the vapour density
-    by_density = press / thin * slab["vapor_density"].standard_error / unit
-    assert abs(press - pressure) < 4.0 * math.hypot(press_se, pressure_se, by_density)
-    assert math.hypot(press_se, pressure_se, by_density) < 0.06 * pressure
-    of_slab = float(late.vapor_well_energy.mean()) / fluid.well_depth
-    assert abs(energy - of_slab) < 0.12 * abs(energy) + 4.0 * energy_se
-
-    low, high = still(0.97 * dense), still(1.03 * dense)
-    share = (pressure - low[0]) / (high[0] - low[0])
-    settled = dense * (0.97 + 0.06 * share)
-    settled_se = 0.06 * dense * math.hypot(low[1] * (1.0 - share), high[1] * share, pressure_se) / (high[0] - low[0])
-    assert settled_se < 0.01 * dense
-    assert -0.01 * dense - 4.0 * settled_se < dense - settled < 4.0 * settled_se
-    of_slab = float(late.liquid_well_energy.mean()) / fluid.well_depth
-    assert of_slab == pytest.approx(low[2] + share * (high[2] - low[2]), rel=0.015)
 
 
 def test_air_that_does_not_attract_keeps_out_of_the_wells():

@@ -12,12 +12,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from atmosbox import scenarios, theory
-from atmosbox.cli import app
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
 from atmosbox.scene.ascent import along_frames, temperature_covariance
@@ -79,20 +76,6 @@ def is_sound(outcome):
 
 
 @pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
-def test_a_file_of_a_scene_is_verified_and_the_same_seed_gives_the_same_numbers(scene, tmp_path):
-    first, again, other = usual(scene), run(scene), run(scene, seed=2)
-    is_sound(first)
-    path = write(first.dataset, tmp_path / "run.nc")
-    checks = runner.verify(read(path))
-    assert len(checks) >= 6
-    assert not [check for check in checks if not check.passed]
-    for name in first.dataset.data_vars:
-        assert np.array_equal(first.dataset[name], again.dataset[name], equal_nan=True), name
-    assert not np.array_equal(first.dataset.gas_temperature, other.dataset.gas_temperature)
-    assert all(each.agrees for each in other.headlines)
-
-
-@pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
 @pytest.mark.parametrize("extreme", [DRY, COLD, FEW], ids=["dry", "cold", "few"])
 def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     outcome = run(scene, **extreme[scene])
@@ -104,33 +87,6 @@ def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     if extreme is not FEW:
         assert "cloud_base" not in found(outcome)
         assert all(each.agrees for each in outcome.headlines)
-
-
-@pytest.mark.parametrize(
-    ("humidity", "liquid"),
-    [
-        (50.0, True),
-        (120.0, True),
-        *(pytest.param(*case, marks=pytest.mark.nightly) for case in ((0.0, False), (100.0, True))),
-    ],
-)
-def test_vapour_condenses_until_its_pressure_is_that_of_saturation_or_it_is_used_up(humidity, liquid):
-    outcome = run("condensation", molecules=4000, duration=16.0, humidity=humidity)
-    is_sound(outcome)
-    assert all(each.agrees for each in outcome.headlines)
-    share = found(outcome)["mean_relative_humidity"]
-    assert share.theory == pytest.approx(0.01 * min(humidity, 100.0), abs=0.1)
-    # there are so few molecules of vapour that saturated air has some clusters, and less vapour
-    assert bool(outcome.dataset.liquid_molecule_count.any()) is liquid
-
-
-def test_thin_air_holds_as_much_vapour():
-    # at 50 hPa nearly half of the gas is vapour
-    outcome = run("condensation", pressure=50.0, duration=60.0, area=20.0, seed=4)
-    share = found(outcome)["mean_relative_humidity"]
-    assert share.standard_error < 0.03
-    assert share.agrees
-    assert share.theory == pytest.approx(1.0, abs=1e-3)
 
 
 def test_a_parcel_too_dry_for_a_cloud_follows_the_dry_adiabat_and_states_no_base():
@@ -171,26 +127,6 @@ def test_neither_a_tenth_less_water_nor_a_pseudo_adiabat_is_within_what_is_allow
     assert allowed[2] < 0.85 * (right - pseudo)[2]
 
 
-@pytest.mark.nightly
-def test_a_run_at_the_default_tells_its_water_and_its_adiabat():
-    outcome = runner.execute(runner.prepare("lifting-moist", {"seed": 2}))
-    ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
-    assert all(each.agrees for each in outcome.headlines)
-    start = ascent.pressure, ascent.temperature
-    for share, keeps, wrong in ((0.9, math.inf, {500, 300}), (1.0, 0.0, {300})):
-        for level in wrong:
-            path = theory.parcel_path([100.0 * level], *start, share * ascent.total_water, keeps, ascent.nuclei_heat)
-            other = replace(found(outcome)[f"temperature_at_{level}_hpa"], theory=float(path.temperature[0]))
-            assert other.agrees is False, (share, keeps, level)
-
-
-def test_air_that_is_saturated_at_the_ground_is_in_its_cloud_from_the_start():
-    outcome = run("lifting-moist", dewpoint=25.0, ascent=300)
-    is_sound(outcome)
-    assert all(each.agrees for each in outcome.headlines)
-    assert (outcome.dataset.liquid_molecule_count[5:] > 0).all()
-
-
 def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
     keeps, rains = usual("lifting-moist"), run("lifting-moist", rain=True, cloud_water=0.0)
     is_sound(rains)
@@ -212,44 +148,6 @@ def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not()
     assert ends[True].theory - ends[False].theory > 2.0
     gap = ends[True].value - ends[False].value
     assert gap > 4.0 * math.hypot(ends[True].standard_error, ends[False].standard_error)
-
-
-def test_rain_out_of_chance_clusters_is_not_compared_with_a_theory_without_chance():
-    few, enough = (run("mountains", cloud_water=water, travel=60) for water in (1.0, 3.0))
-    assert {each.theory for each in few.headlines} == {None}
-    assert all(each.theory is not None for each in enough.headlines)
-
-
-def test_vapour_may_be_nearly_all_of_the_gas_but_not_more_than_it():
-    # at 95 degC saturation is 845 hPa
-    outcome = run("condensation", molecules=1000, temperature=95.0, pressure=500.0, humidity=59.0)
-    is_sound(outcome)
-    assert all(each.agrees for each in outcome.headlines)
-    assert found(outcome)["mean_relative_humidity"].theory == pytest.approx(0.59, abs=0.01)
-    with pytest.raises(SettingError, match=r"more vapour than there is gas.*humidity=.60percent"):
-        runner.prepare("condensation", {"temperature": 95.0, "pressure": 500.0, "humidity": 70.0})
-
-
-@pytest.mark.parametrize(
-    ("scene", "given", "words", "fix"),
-    [
-        ("condensation", ["pressure=1hPa"], "humidity = 150 percent is more vapour", "humidity=4percent"),
-        ("lifting-moist", ["top_pressure=990hPa"], "is not below the pressure", "top_pressure=300hPa"),
-        ("lifting-moist", ["dewpoint=26degC"], "is above the temperature", "dewpoint=25degC"),
-        ("mountains", ["valley=2.5km"], "is higher than the lower mountain", "valley=2km"),
-        ("mountains", ["dewpoint=26degC"], "is above the temperature", "dewpoint=25degC"),
-    ],
-)
-def test_what_cannot_be_ends_with_status_2_and_what_to_type_instead(scene, given, words, fix, tmp_path):
-    typed = [word for each in given for word in ("--set", each)]
-    done = CliRunner().invoke(app, ["run", scene, *typed, "--out", str(tmp_path / "no.nc")], env={"COLUMNS": "300"})
-    assert done.exit_code == 2
-    assert words in done.stderr
-    assert f"--set {fix}" in done.stderr
-    assert not list(tmp_path.iterdir())
-    name, _, value = fix.partition("=")
-    before = dict(word.split("=") for word in given)
-    runner.prepare(scene, {**before, name: value})
 
 
 # ------------------------------------------------------------------ the molecules themselves
