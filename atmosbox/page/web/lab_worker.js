@@ -117,6 +117,7 @@ class Box {
     const { machine } = this;
     while (this.now < goal) {
       if (!this.inside) this.turnKnobs();
+      if (this.failed) return;
       const due = this.moment(), until = Math.min(goal, due);
       machine.set("pass_time", "4", until);
       machine.set("pass_time", "5", BigInt(EVENTS));
