@@ -33,7 +33,7 @@ from atmosbox.page.gauge import gauges
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.page_panel import declared
 from atmosbox.scene.conversion import declared_unit
-from atmosbox.scene.instruments import MOMENTS, Lift
+from atmosbox.scene.instruments import MOMENTS, Lift, Nuclei
 from atmosbox.simulation.preparation import Prepared
 from atmosbox.simulation.replay import link_start
 from atmosbox.theory.constants import BOLTZMANN
@@ -48,7 +48,8 @@ __all__ = ["STATE", "lab_plan"]
 STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
 """The arrays that are equal, to the last bit, if two boxes are in the same state."""
 
-_CROSSINGS = 4.0
+_CROSSINGS, _SLOWLY = 4.0, 1.6
+"""Times that a molecule crosses the box in a second at the usual pace, and the same where drops soon vanish."""
 _WHOLE = 60.0
 """Least time that the usual pace takes for a whole run [s]."""
 _SOON = 30.0
@@ -166,7 +167,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
 def _rate(setup: Setup, least: float) -> float:
     """Return the time of the box that passes in a second at the usual pace [reduced time].
 
-    A molecule crosses the box about four times in a second, but the whole run lasts at least ``least`` seconds; an
+    A molecule crosses the box `_CROSSINGS` times in a second, but the whole run lasts at least ``least`` seconds; an
     ascent lasts exactly as long.
     """
     parcel = setup.parcel
@@ -177,7 +178,8 @@ def _rate(setup: Setup, least: float) -> float:
     speed = math.sqrt(8.0 / math.pi * float(np.nanmax([kT, *parcel.wall_kT()])) / float(np.mean(parcel.mass)))
     sides = parcel.length[[0, 2]] if parcel.planar else parcel.length
     side = float(np.exp(np.log(sides).mean()))
-    return min(whole, _CROSSINGS * side / speed) if speed > 0.0 else whole
+    crossings = _SLOWLY if any(type(each) is Nuclei for each in setup.instruments) else _CROSSINGS
+    return min(whole, crossings * side / speed) if speed > 0.0 else whole
 
 
 def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
