@@ -11,7 +11,6 @@ from atmosbox.errors import FileError
 from atmosbox.file.spreadsheet import tables
 from atmosbox.file.trajectory import extended_xyz
 from tests.few_frames import cut
-from tests.in_process import typed
 
 DALTON = 1.66053906892e-27
 
@@ -76,21 +75,6 @@ def test_a_spreadsheet_has_the_same_numbers_under_their_units(box):
     assert not any("molecule_position" in title for title in head)
     (row,) = [row for row in made["headlines"] if row[0] == "mean_temperature"]
     assert float(row[2]) == float(box.mean_temperature)
-
-
-def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path, monkeypatch):
-    ab.run("temperature", molecules=50, duration="1 ns", save_molecules=True, out=tmp_path / "box.nc")
-
-    monkeypatch.chdir(tmp_path)
-
-    def export(*words):
-        return typed("export", "box.nc", *words)
-
-    assert export().stdout == "box.extxyz\n"
-    assert export("--format", "csv").stdout.split() == [
-        f"box-{name}.csv" for name in tables(ab.open(tmp_path / "box.nc"))
-    ]
-    assert export("-o", "box.pdb").exit_code == 2
 
 
 def test_a_run_without_molecules_or_velocities_says_what_to_do(box):

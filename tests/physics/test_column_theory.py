@@ -26,16 +26,6 @@ def test_a_finite_column_has_the_tabulated_profile():
         assert column_at_rest.column_heat_capacity(*column) == pytest.approx(capacity, abs=5e-7)
 
 
-def test_a_barometric_column_holds_its_molecules_and_carries_their_weight():
-    column = {"bottom": 0.5, "top": 9.5, "kT": 1.3, "mass": 0.9, "gravity": 0.7}
-    count = integrate.quad(lambda z: float(theory.barometric_density(z, 20.0, **column)), 0.5, 9.5)[0]
-    assert count == pytest.approx(20.0, rel=1e-10)
-    floor, ceiling = theory.gas_pressure(theory.barometric_density([0.5, 9.5], 20.0, **column), 1.3)
-    assert floor - ceiling == pytest.approx(20.0 * 0.9 * 0.7, rel=1e-14)
-    aloft = theory.barometric_pressure(9.0, floor, 1.3, 0.9, 0.7)
-    assert aloft == pytest.approx(ceiling, rel=1e-14)
-
-
 DENSE = {"molecules_per_area": 3.0, "bottom": 0.5, "top": 11.5, "kT": 1.2, "mass": 1.5, "gravity": 0.2, "diameter": 1.0}
 
 
@@ -54,15 +44,6 @@ def test_a_dense_column_holds_its_molecules_and_carries_their_weight(column):
     assert floor - ceiling == pytest.approx(held * 1.5 * column["gravity"], rel=1e-12)
     edges = np.array([0.0, 0.4, 2.0, 5.0, 9.0, 12.0])
     assert theory.hydrostatic_layers(edges, **column) @ np.diff(edges) == pytest.approx(held, rel=1e-12)
-
-
-@of_spheres_and_discs
-def test_a_column_of_tiny_molecules_is_barometric(column):
-    heights = np.linspace(0.0, 12.0, 25)
-    tiny = column_at_rest.hydrostatic_column(heights, **(column | {"diameter": 1e-7}))
-    points = column_at_rest.hydrostatic_column(heights, **(column | {"diameter": 0.0, "dimensions": 3}))
-    assert np.count_nonzero(points == 0.0) == 2  # below the bottom and above the top
-    assert np.allclose(tiny, points, rtol=1e-11, atol=0.0)
 
 
 @pytest.mark.parametrize("deep", [1e-4, 0.3, 3.0, 40.0, 3400.0])
