@@ -7,7 +7,6 @@ import pytest
 from scipy import integrate
 
 from atmosbox import theory
-from tests.oracle import kinetic_gas
 
 
 def test_the_dry_adiabat_is_metpys():
@@ -24,13 +23,6 @@ def test_a_parcel_lifted_through_air_of_its_own_temperature_follows_the_dry_laps
     pressure = theory.environment_pressure(3000.0, 290.0, 1e5, rate)
     parcel = theory.dry_adiabat_temperature(pressure, 290.0, 1e5)
     assert parcel == pytest.approx(theory.environment_temperature(3000.0, 290.0, rate), rel=1e-13)
-
-
-@pytest.mark.parametrize("s", [-1.0, -0.1, 0.0, 0.3, 2.0])
-def test_the_pressure_on_a_moving_piston_is_that_of_the_molecules_that_catch_it(s):
-    # kT = 1/2 and mass 1, so that the most probable speed is 1: 2 n m (v - u)^2 over v > u, over n kT.
-    pressed = integrate.quad(lambda v: 2.0 * (v - s) ** 2 * np.exp(-(v**2)) / np.sqrt(np.pi), s, np.inf)[0]
-    assert kinetic_gas.piston_pressure_ratio(s, 0.5, 1.0) == pytest.approx(pressed / 0.5, rel=1e-9)
 
 
 @pytest.mark.parametrize(
