@@ -17,7 +17,7 @@ from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
 from atmosbox.scene import engines
-from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF, Headline
+from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
@@ -112,14 +112,6 @@ def test_the_cheapest_way_within_the_accuracy_is_picked():
         assert (picked.way.engine, picked.way.settings, picked.met) == (engine, settings, True)
 
 
-def test_another_experiment_is_not_picked_for_its_accuracy_but_when_it_is_asked_for():
-    assert "start" not in choose("temperature", "reference", tables=TABLES).way.settings
-    other = choose("temperature", "reference", {"start": "equal", "pressure": 500.0}, TABLES)
-    assert other.way.settings == {"start": "equal"}
-    with pytest.raises(SettingError, match="with these settings, at which nothing was measured"):
-        choose("temperature", "sketch", {"start": "unequal"}, TABLES)
-
-
 # What is run and what the report says
 
 
@@ -161,20 +153,6 @@ def test_an_accuracy_may_stand_in_a_settings_file_and_in_python(tmp_path, hand_m
 
 
 # A bias that is known
-
-
-def headline(value, **known):
-    return Headline("t", value, 0.1, 300.0, 0.2, "the box is small", "K", "K", "temperature", **known)
-
-
-def test_a_known_bias_excuses_a_misfit_to_its_side_alone():
-    cases = [
-        (300.59, {}, True), (300.7, {}, False), (302.5, {"bias": 2.0}, True), (302.7, {"bias": 2.0}, False),
-        (302.7, {"bias": 2.0, "bias_se": 0.1}, True), (299.3, {"bias": 2.0}, False), (299.3, {"bias": -2.0}, True),
-        (300.0, {"bias": 2.0}, True), (math.nan, {"bias": 2.0}, False),
-    ]  # fmt: skip
-    for value, known, agrees in cases:
-        assert headline(value, **known).agrees is agrees
 
 
 def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_file_is_read(tmp_path, monkeypatch):

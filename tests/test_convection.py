@@ -124,16 +124,6 @@ def test_an_ideal_gas_under_more_weight_stays_at_rest_as_theory_says():
     )
 
 
-def test_wind_and_heat_are_compared_with_air_at_rest_only_where_buoyancy_does_not_drive_it():
-    # at this gravity rolls decay only because the air is so viscous, and noise drives them more than in air at rest
-    settings = {"molecules": 2000, "width": 0.5, "gravity": 9.0, "duration": 50.0}
-    viscous = ran("dsmc", **settings)
-    card = runner.card(runner.prepare("convection", settings, engine="dsmc"))
-    assert "stays at rest" in dict(card.facts)["onset by linear theory"]
-    assert number(viscous, "nusselt_number").theory is None
-    assert all(each.name != "mean_square_wind" for each in viscous.headlines)
-
-
 @pytest.mark.nightly
 def test_rolls_of_sixty_seeds_grow_as_linear_theory_says_within_their_errors():
     """Of one processor it takes half an hour."""

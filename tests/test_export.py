@@ -1,6 +1,5 @@
 """Runs for other programs: molecules as extended XYZ, numbers as CSV, each read by another program."""
 
-import csv
 import io
 
 import numpy as np
@@ -8,10 +7,8 @@ import pytest
 
 import atmosbox as ab
 from atmosbox.errors import FileError
-from atmosbox.file.spreadsheet import tables
 from atmosbox.file.trajectory import extended_xyz
 from tests.few_frames import cut
-from tests.in_process import typed
 
 DALTON = 1.66053906892e-27
 
@@ -60,37 +57,6 @@ def test_a_molecule_in_the_liquid_is_left_out_and_keeps_its_number(cloud):
     for frame, there in zip(frames, present, strict=True):
         assert frame.arrays["id"].tolist() == (np.flatnonzero(there) + 1).tolist()
         assert [symbol == "O" for symbol in frame.symbols] == (cloud.species.values[there] == 1).tolist()
-
-
-def test_a_spreadsheet_has_the_same_numbers_under_their_units(box):
-    made = {name: list(csv.reader(io.StringIO(text.decode()))) for name, text in tables(box).items()}
-    assert set(made) == {"headlines", "elapsed_time", "speed"}
-    head, *body = made["elapsed_time"]
-    assert head[0] == "elapsed_time [ns]"
-    for title, values in (
-        ("air_temperature [K]", box.air_temperature),
-        ("wall_pressure z_low [Pa]", box.wall_pressure.sel(wall="z_low")),
-    ):
-        column = [float(row[head.index(title)]) for row in body]
-        np.testing.assert_array_equal(column, values.values)
-    assert not any("molecule_position" in title for title in head)
-    (row,) = [row for row in made["headlines"] if row[0] == "mean_temperature"]
-    assert float(row[2]) == float(box.mean_temperature)
-
-
-def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path, monkeypatch):
-    ab.run("temperature", molecules=50, duration="1 ns", save_molecules=True, out=tmp_path / "box.nc")
-
-    monkeypatch.chdir(tmp_path)
-
-    def export(*words):
-        return typed("export", "box.nc", *words)
-
-    assert export().stdout == "box.extxyz\n"
-    assert export("--format", "csv").stdout.split() == [
-        f"box-{name}.csv" for name in tables(ab.open(tmp_path / "box.nc"))
-    ]
-    assert export("-o", "box.pdb").exit_code == 2
 
 
 def test_a_run_without_molecules_or_velocities_says_what_to_do(box):

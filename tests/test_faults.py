@@ -7,7 +7,6 @@ import contextlib
 import ctypes
 import os
 import random
-import shutil
 import signal
 import subprocess
 import sys
@@ -178,22 +177,6 @@ def test_a_disk_that_fills_ends_a_run_with_a_sentence_and_nothing_half_written(t
             if room == 1200:  # with more room the run continues
                 subprocess.run(["mount", "-o", "remount,size=200m", place], check=True)
                 assert command(["run", "--resume", "x.part.nc"], place)[0] in (0, 3)
-
-
-@root
-@pytest.mark.soak
-def test_a_folder_that_nothing_may_be_written_to_is_refused_and_a_cache_there_is_not_missed(usual, tmp_path):
-    with disk(tmp_path / "disk", "size=20m") as place:
-        shutil.copy(usual / "x.nc", place / "y.nc")
-        subprocess.run(["mount", "-o", "remount,ro", place], check=True)
-        for words in (SHORT, ["plot", "y.nc"], ["export", "y.nc", "--format", "csv"], ["sheet", SCENE],
-                      ["sweep", SCENE, "--vary", "molecules=10,20"]):  # fmt: skip
-            status, _, said = command(words, place)
-            assert status == 2, (words, said)
-            assert said.startswith("error: ")
-        status, _, said = command(SHORT, tmp_path / "run", NUMBA_CACHE_DIR=str(place))
-        assert status == 0, said
-        assert same(tmp_path / "run", usual)
 
 
 # Caches

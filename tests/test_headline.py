@@ -79,20 +79,6 @@ def test_what_a_run_is_too_small_to_measure_is_no_result_and_the_run_says_what_t
     assert caption.headline(found, "z") is None
 
 
-def test_numbers_of_another_program_stand_apart_and_have_no_verdict():
-    other = Headline(
-        "z", 1877.93, 0.0, 1885.31, 0.0, "MetPy leaves heat out", "J kg-1", "J kg-1", "CAPE", program="MetPy"
-    )
-    lines = headline_lines([headline(), other], 80)
-    assert lines[-3:] == [
-        "two programs compared  MetPy  atmosbox",
-        "CAPE [J/kg]            1878   1885",
-        "MetPy leaves heat out.",
-    ]
-    found = dataset({}, {}, {}, [other])
-    assert [check.name for check in verify(found)] == ["complete", "finite"]
-
-
 def test_check_and_the_file_say_what_is_expected():
     stated = headline(theory=14.5, tolerance=0.75)
     found = dataset({}, {}, {}, [stated])

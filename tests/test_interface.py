@@ -51,15 +51,6 @@ def test_a_run_begins_with_its_numbers_and_is_a_dataset_in_all_else(lifted):
     assert shown.index("temperature at 700 hPa") < shown.index("xarray.Dataset") < shown.index("parcel_temperature")
 
 
-def test_a_saved_run_is_opened_as_it_was_and_replaced_only_by_force(tmp_path):
-    path = tmp_path / "run.nc"
-    made = ab.run(SCENE, duration="2 s", out=path)
-    assert repr(ab.open(path)).splitlines()[:8] == repr(made).splitlines()[:8]
-    with pytest.raises(errors.FileError, match="add force=True to replace it, or name another file with out"):
-        ab.run(SCENE, duration="2 s", out=path)
-    assert ab.run(SCENE, duration="2 s", seed=2, out=path, force=True).identical(ab.open(path))
-
-
 def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
     warm = ab.run("lifting-dry", molecules=200, temperature="30 degC")
     both = ab.compare(lifted, warm)

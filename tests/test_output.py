@@ -212,14 +212,6 @@ def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, forc
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
-def test_a_symbolic_link_keeps_pointing_to_the_file(tmp_path):
-    (tmp_path / "disk").mkdir()
-    (tmp_path / "run.nc").symlink_to(tmp_path / "disk" / "real.nc")
-    output.write(lifting(), tmp_path / "run.nc")
-    assert (tmp_path / "run.nc").is_symlink()
-    assert output.read(tmp_path / "disk" / "real.nc").title == "Lifted air"
-
-
 @pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (Path, "write_bytes")])
 def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch, place):
     path, new = output.write(lifting(), tmp_path / "run.nc"), lifting().isel(elapsed_time=slice(10))

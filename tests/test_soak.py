@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular, Substance
-from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 
 pytestmark = pytest.mark.soak
@@ -103,18 +102,3 @@ def test_an_exact_box_stays_lawful(name, request, figures):
     said = figures(name, box, deepest_overlap=deepest)
     assert said["ledger"] < 1e-10
     assert said["memory_growth_kB"] < 50_000
-
-
-def test_many_molecules_of_dsmc_stay_lawful(request, figures):
-    share = request.config.getoption("--soak")
-    number, steps = int(max(1e7 * share, 1e4)), int(max(1e4 * share, 100))
-    random = np.random.default_rng(1)
-    side = (number / 0.02) ** (1.0 / 3.0)
-    box = DsmcParcel(random.uniform(1.0, side - 1.0, (number, 3)), random.normal(size=(number, 3)), length=(side,) * 3)
-    for done in range(steps // 20, steps + 1, steps // 20):
-        box.advance(done * box.time_step)
-        said = figures("dsmc", box, molecules=number, steps=done)
-        assert said["escaped"] == 0
-    assert said["collisions"] > 0
-    assert said["ledger"] < 1e-10
-    assert said["memory_growth_kB"] < 50_000 + 0.05 * number

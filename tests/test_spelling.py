@@ -5,8 +5,6 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from typer.main import get_command
 
 from atmosbox import scenarios
@@ -55,19 +53,6 @@ def test_what_is_no_assignment_is_refused_with_its_text():
         with pytest.raises(SettingError) as caught:
             assignments(items)
         assert str(caught.value) == sentence
-
-
-@given(st.lists(st.text(max_size=20) | st.builds("{}={}".format, st.text(max_size=8), st.text(max_size=8)), max_size=3))
-def test_any_text_is_an_assignment_or_refused_in_one_sentence(items):
-    try:
-        values = assignments(items)
-    except SettingError as error:
-        sentence = str(error)
-        assert sentence.isprintable()
-        assert sentence.endswith(".")
-    else:
-        assert len(values) == len(items)
-        assert all(values.values())
 
 
 WORDS = {

@@ -58,15 +58,6 @@ def runs(monkeypatch):
     return made
 
 
-def test_a_series_becomes_ways_of_running_with_options_and_settings():
-    steps, settings = Series("stepped:motion=euler", "delta", (0.2,)), Series("exact", "ascent", (100,), {"seed": 3})
-    made = ways_of([steps, settings], {"molecules": 50})
-    assert [way.engine for way in made] == ["stepped:motion=euler,delta=0.2", "exact"]
-    assert made[0].settings == {"molecules": 50}
-    assert made[1].settings == {"molecules": 50, "seed": 3, "ascent": 100}
-    assert made[1].label == "exact, molecules=50, seed=3, ascent=100"
-
-
 def test_bias_and_noise_are_told_apart():
     # A hundred members with an error of 0.5 and a scatter of 2: four standard errors, a false alarm in 16 000 seeds.
     rng = np.random.default_rng(1)

@@ -33,14 +33,6 @@ def test_led_by_hand_it_goes_at_the_pace_of_the_plan():
     assert course.moment(2.0) == pytest.approx(2.0)
 
 
-def test_a_new_aim_on_the_way_forgets_the_old_one_but_not_the_way():
-    course = Course(10.0)
-    course.lead(4.0, 1.0)
-    course.lead(5.0, 9.0)
-    course.lead(5.0, 8.0)
-    assert [course.moment(t) for t in (4.0, 5.0, 7.0, 10.0, 50.0)] == pytest.approx([4.0, 3.0, 5.0, 8.0, 8.0])
-
-
 def test_what_no_plan_knows_is_refused():
     for time, towards in [(1.0, 2.0), (9.0, -1.0), (9.0, 10.5), (math.nan, 1.0), (9.0, math.inf)]:
         course = Course(10.0)

@@ -156,24 +156,6 @@ def test_a_gas_at_rest_falls_and_collides():
     assert still.contacts == 0
 
 
-def test_cells_and_steps_are_as_asked():
-    number, side = 5000, 50.0
-    path = (side - 1.0) ** 3 / (math.sqrt(2.0) * number * math.pi)
-    free_time = path / math.sqrt(8.0 / math.pi)
-    velocity = np.random.default_rng(1).normal(size=(number, 3))
-    velocity *= math.sqrt(3.0 * number / np.sum(velocity**2))
-    for options, edge in (({}, (10.0 * 49.0**3 / number) ** (1.0 / 3.0)), ({"cell": 0.5, "dt": 0.1}, 0.5 * path)):
-        gas = box(number, side, walls=SMOOTH, velocity=velocity, **options)
-        assert gas.time_step == pytest.approx(options.get("dt", 0.2) * free_time, rel=1e-12)
-        found = gas.resolution()
-        # of the densest layer, which a few hundred molecules make by chance
-        assert 0.9 * edge / path < found.cell < 1.6 * edge / path
-        assert options.get("dt", 0.2) < found.step < 1.6 * options.get("dt", 0.2)
-    gas.divide(1.0)
-    assert 1.0 / gas.time_step == pytest.approx(round(1.0 / gas.time_step), rel=1e-12)
-    assert gas.time_step <= 0.1 * free_time
-
-
 def test_a_piston_that_comes_down_too_far_says_so():
     gas = box(30, 10.0, walls=(*SMOOTH[:5], Piston(-1.0)))
     with pytest.raises(StalledError, match=r"the piston has come down to 1\.\d+ at t = [89]\.\d+"):

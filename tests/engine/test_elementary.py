@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from atmosbox.engine.core import elementary
-from atmosbox.engine.core.jit import COMPILED, kernel
 from atmosbox.engine.core.random import START, RandomNumbers, gaussian_pair, new_state, normal, uniform
 
 RNG = np.random.default_rng(1)
@@ -66,30 +65,6 @@ def test_cosine_and_sine_of_turns_are_within_one_unit_in_the_last_place():
             cosine, sine = (float(each) for each in elementary.circle(u))
             assert units(cosine, mpmath.cospi(2 * mpmath.mpf(u))) <= 1.0, u
             assert units(sine, mpmath.sinpi(2 * mpmath.mpf(u))) <= 1.0, u
-
-
-@pytest.mark.skipif(not COMPILED, reason="there is nothing to compare with")
-@pytest.mark.parametrize("name", [*CASES, "circle"])
-def test_compiled_and_as_written_give_the_same_bits(name):
-    function = getattr(elementary, name)
-
-    @kernel
-    def all_of(x, out):
-        for i in range(x.size):
-            out[i] = function(x[i])
-
-    x = RNG.random(2000) if name == "circle" else np.concatenate(CASES[name][1])
-    out = np.zeros((x.size, 2)) if name == "circle" else np.zeros(x.size)
-    if name == "circle":
-
-        @kernel
-        def all_of(x, out):
-            for i in range(x.size):
-                out[i, 0], out[i, 1] = function(x[i])
-
-    all_of(x, out)
-    written = np.array([function(u) for u in x.tolist()])
-    assert written.tobytes() == out.tobytes()
 
 
 def test_numbers_made_at_once_are_those_drawn_one_by_one():

@@ -144,21 +144,6 @@ class Planted:
         return Path.touch, (self.mark,)
 
 
-@needs_numba
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
-def test_the_cache_is_made_for_its_owner_alone_whatever_the_umask(tmp_path, monkeypatch):
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "deep" / "home"))
-    before = os.umask(0)
-    try:
-        monkeypatch.setattr(compiler, "_CACHE", kernel_cache.cache_folder())
-        assert (hits(), hits()) == (0, 1)
-    finally:
-        os.umask(before)
-    made = list((tmp_path / "deep").rglob("*"))
-    assert {path.stat().st_mode & 0o777 for path in made if path.is_dir()} == {0o700}
-    assert {path.stat().st_mode & 0o777 for path in made if path.suffix in (".nbc", ".digest")} == {0o600}
-
-
 def linked(path):
     path.rename(path.with_name("elsewhere"))
     path.symlink_to(path.with_name("elsewhere"))

@@ -11,7 +11,6 @@ import pytest
 from scipy import integrate, special, stats
 
 from atmosbox.engine import Mist, Substance
-from atmosbox.engine.core.random import gamma_of_shape
 from atmosbox.engine.liquid.reservoir import (
     LIQUID,
     RAINED,
@@ -101,18 +100,6 @@ def test_the_substance_knows_the_vapour_pressure_that_the_rate_implies():
 
 
 # ------------------------------------------------------------------ with which energies
-
-
-@pytest.mark.parametrize("shape", [0.3, 1.0, 2.5, 1e5])
-def test_gamma_variates_of_any_shape_have_their_moments(shape):
-    state = random_state(17)
-    sample = np.array([gamma_of_shape(shape, state) for _ in range(NUMBER)])
-    assert sample.min() >= 0.0
-    assert held(sample, shape, shape)
-    # the fourth central moment of a gamma variate is 3 s^2 + 6 s
-    assert held((sample - shape) ** 2, shape, 2.0 * shape**2 + 6.0 * shape)
-    assert stats.kstest(sample, "gamma", args=(shape,)).pvalue > 1e-4
-    assert gamma_of_shape(0.0, state) == 0.0
 
 
 @pytest.mark.parametrize(("number", "nuclei"), [(1, 0.0), (1, 10.0), (2, 0.0), (5, 50.0)])

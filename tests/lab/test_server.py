@@ -16,9 +16,8 @@ import pytest
 
 from atmosbox.cli.request import gather, with_fewer_molecules
 from atmosbox.errors import SettingError
-from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.lab.lab_start import AS_WRITTEN
-from atmosbox.lab.server import PORT, Server, allowed
+from atmosbox.lab.server import PORT, Server
 from atmosbox.simulation.preparation import build, prepare
 from tests.lab.test_browser import Lab, advance, state_of
 
@@ -82,30 +81,6 @@ def test_only_our_own_page_is_served_and_only_to_who_has_the_token(site):
         assert found == status, (path, headers)
         assert TOKEN not in body
     assert "connect-src 'self'" in ask(site, whole)[1]
-
-
-@pytest.mark.parametrize(
-    ("host", "origin", "ours"),
-    [
-        ("localhost:8642", "http://localhost:8642", True),
-        ("LOCALHOST:8642", "http://localhost:8642", True),
-        ("[::1]:8642", "http://[::1]:8642", True),
-        ("localhost:8642", "http://127.0.0.1:8642", False),
-        ("localhost.evil.example", None, False),
-        ("localhost@evil.example", None, False),
-        (None, None, False),
-    ],
-)
-def test_names_of_other_computers_are_not_ours(host, origin, ours):
-    assert allowed(host, origin) is ours
-
-
-def test_a_plan_is_that_of_the_box_with_the_changed_setting(site):
-    status, told = plan(site, molecules=20, filling=10)
-    assert status == 200
-    ((key, _, size),) = told["starts"]
-    _, memory, _ = lab_plan(prepare("elastic-collisions", {"molecules": 20, "filling": 10}))
-    assert (key, size) == ("", sum(len(content) for _, content in memory.pieces))
 
 
 def test_what_is_refused_is_said_in_a_sentence_for_the_page(site):

@@ -73,9 +73,3 @@ def test_a_set_of_modes_without_a_module_is_refused_in_a_sentence():
         module_bytes(module_name(Modes(*[True] * 13)), "elastic-collisions")
     told = refused.value.said(on_command_line)
     assert "atmosbox run elastic-collisions --save-molecules, then atmosbox view" in told
-
-
-def test_a_checkout_without_modules_says_how_they_are_made(monkeypatch, tmp_path):
-    monkeypatch.setattr("atmosbox.lab.wasm_module.FOLDER", tmp_path)
-    with pytest.raises(EngineError, match=r"python tools/wasm\.py"):
-        module_bytes(module_name(Modes(*[True] * 13)), "temperature")

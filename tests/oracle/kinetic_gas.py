@@ -15,19 +15,9 @@ def wall_flux(number_density, kT, mass):
     return number_density * np.sqrt(kT / (2.0 * np.pi * mass))
 
 
-def heat_noise(hits, kT, rotational_dof=0):
-    """Return the scatter of the heat from a heat bath in equilibrium: each hit takes and gives (2 + z/2) (kT)^2."""
-    return kT * np.sqrt((4.0 + rotational_dof) * np.asarray(hits, float))
-
-
 def compressibility_noise(compressibility_factor, collisions):
     """Return the standard error of Z from a number of independent collisions with Rayleigh-distributed impulses."""
     return (compressibility_factor - 1.0) * np.sqrt(4.0 / (np.pi * collisions))
-
-
-def isothermal_work(molecules, kT, volume0, volume):
-    """Return the work of an ideal gas that expands slowly at constant temperature, N kT ln(V / V0)."""
-    return molecules * kT * np.log(volume / volume0)
 
 
 def piston_pressure_ratio(piston_speed, kT, mass):

@@ -8,7 +8,7 @@ import numpy as np
 
 from atmosbox.theory import _water
 from atmosbox.theory._water import AIR_HEAT, BINDING, EXCESS, MASS_RATIO
-from atmosbox.theory.constants import GAS_CONSTANT, STANDARD_GRAVITY, WATER
+from atmosbox.theory.constants import GAS_CONSTANT, WATER
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
 
 
@@ -35,12 +35,3 @@ def pseudoadiabat(pressure, pressure0, temperature0, nuclei_heat=0.0):
     p = np.asarray(pressure, float)
     heat = AIR_HEAT + nuclei_heat
     return _water.rained_temperature(p.ravel(), float(pressure0), float(temperature0), 0.0, heat).reshape(p.shape)
-
-
-def moist_lapse_rate(pressure, temperature, liquid=0.0):
-    """Return the lapse rate of saturated air [K/m]."""
-    p, t, carried = (np.asarray(each, float) for each in (pressure, temperature, liquid))
-    vapor = _water.saturated_vapor(p, t)
-    weight = (1.0 + MASS_RATIO * vapor) / (1.0 + vapor)
-    slope = _water.saturated_slope(p, t, carried / MASS_RATIO, np.asarray(AIR_HEAT))
-    return STANDARD_GRAVITY / DRY_AIR_GAS_CONSTANT * weight * slope

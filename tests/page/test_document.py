@@ -69,11 +69,6 @@ def test_words_of_a_run_cannot_break_out_of_the_page(run):
     assert told(text)[0]["stage"]["title"] == wicked
 
 
-def test_the_same_run_gives_the_same_bytes(run, tmp_path):
-    first, second = (save([run(5, 9)], tmp_path / name).read_bytes() for name in ("a.html", "b.html"))
-    assert first == second
-
-
 def test_a_run_that_is_larger_than_a_page_is_thinned_and_the_page_says_so(run, tmp_path):
     path = save([run(400, 6000)], tmp_path / "page.html")
     assert path.stat().st_size <= 10_000_000

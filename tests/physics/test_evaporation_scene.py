@@ -130,19 +130,6 @@ def test_what_cannot_be_is_refused_with_what_to_type_instead(settings, words):
     runner.prepare("evaporation", {**settings, **dict([refusal.value.remedy[0]])})
 
 
-def test_the_wet_bulb_is_a_fact_unless_the_air_is_supersaturated():
-    def facts(**settings):
-        prepared = runner.prepare("evaporation", {"molecules": 200, "pool": 20, **settings})
-        return runner.build(prepared).facts
-
-    bulb = float(facts()["wet-bulb temperature"].split()[0])
-    assert bulb == pytest.approx(15.63, abs=0.01)
-    # a pool that is warm at the start ends warmer
-    assert bulb < float(facts(pool=40)["at the end, by the balance of enthalpy"].split()[0]) < 30.0
-    assert facts(humidity=120.0)["wet-bulb temperature"].startswith("none")
-    assert float(facts(humidity=100.0)["wet-bulb temperature"].split()[0]) == pytest.approx(30.0, abs=0.01)
-
-
 def test_the_walls_cool_the_air_over_a_pool_and_a_cover_slows_both_rates_alike():
     prepared = prepare("evaporation", {"molecules": 3000, "pool": 600, "duration": "20 ns"}, engine="exact")
     setup = build(prepared)

@@ -43,16 +43,6 @@ def test_the_speed_distribution_is_maxwells(dimensions, law):
     assert theory.mean_speed(kT, mass, dimensions) == pytest.approx(expected.mean(), rel=1e-12)
 
 
-@pytest.mark.parametrize("molecules", [4, 20, 300])
-def test_the_mean_speed_in_a_box_of_constant_energy_is_that_of_a_beta_distribution(molecules):
-    # The share of the energy in k of f quadratic terms is Beta(k/2, (f-k)/2); here k = 3.
-    f = 3 * molecules
-    speed = np.sqrt(f) * stats.beta(1.5, (f - 3) / 2.0).expect(np.sqrt)
-    factor = kinetic_gas.constant_energy_speed_factor(f)
-    assert factor == pytest.approx(speed / theory.mean_speed(1.0, 1.0), rel=1e-8)
-    assert factor == pytest.approx(1.0 + 0.25 / f, abs=0.1 / f**2)
-
-
 def test_what_a_heat_bath_sends_out_balances_what_hits_it():
     # Integrals over the half of a Maxwell distribution that moves towards the wall, weighted with v_n.
     def through(power):

@@ -13,7 +13,7 @@ import pytest
 from scipy import special
 
 from atmosbox import theory as law
-from atmosbox.engine import Drops, HeatBath, RefusedError, Specular, Substance
+from atmosbox.engine import Drops, HeatBath, Specular, Substance
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.scene.statistics import block_average
@@ -262,16 +262,3 @@ def test_the_oracle_and_the_theory_are_one_law():
     reach, salty = law.kelvin_radius(**water), 1e9 * 3.0 * law.WATER_VOLUME / (4.0 * math.pi)
     assert thin.radius == pytest.approx(math.sqrt(3.0 * salty / reach), rel=1e-3)
     assert math.log(thin.humidity) == pytest.approx(2.0 * reach / (3.0 * thin.radius), rel=1e-3)
-
-
-def test_what_no_drop_can_have_is_refused():
-    for changes, says in [
-        ({"tension": -1.0}, "surface tension"),
-        ({"tension": 5000.0}, "give less than"),
-        ({"salt": (1.0, 2.0)}, "2 numbers of dissolved particles for 1 nuclei"),
-        ({"salt": (-1.0,)}, "dissolved"),
-        ({"nucleus": (0.1, 0.2)}, "2 radii for 1 nuclei"),
-        ({"nucleus": (0.0,)}, "must be above 0"),
-    ]:
-        with pytest.raises(RefusedError, match=says):
-            drops(10, **changes)

@@ -7,7 +7,6 @@ import pytest
 from scipy import integrate
 
 from atmosbox import theory
-from tests.oracle import kinetic_gas
 
 
 def test_the_dry_adiabat_is_metpys():
@@ -19,27 +18,11 @@ def test_the_dry_adiabat_is_metpys():
     assert np.allclose(theory.dry_adiabat_temperature(pressure, 293.15, 1000.0), expected, rtol=1e-12)
 
 
-def test_the_adiabats_in_volume_and_in_pressure_are_one():
-    for dof in (2, 3, 5):
-        temperature = 3.0 ** (-2.0 / dof)
-        assert theory.dry_adiabat_temperature(temperature / 3.0, 1.0, 1.0, dof) == pytest.approx(temperature)
-        gamma = theory.adiabatic_index(dof)
-        assert temperature / 3.0 == pytest.approx(3.0**-gamma, rel=1e-14)
-    assert np.allclose(theory.adiabatic_index([2, 3, 5]), [2.0, 5.0 / 3.0, 1.4], rtol=1e-15)
-
-
 def test_a_parcel_lifted_through_air_of_its_own_temperature_follows_the_dry_lapse_rate():
     rate = theory.dry_lapse_rate()
     pressure = theory.environment_pressure(3000.0, 290.0, 1e5, rate)
     parcel = theory.dry_adiabat_temperature(pressure, 290.0, 1e5)
     assert parcel == pytest.approx(theory.environment_temperature(3000.0, 290.0, rate), rel=1e-13)
-
-
-@pytest.mark.parametrize("s", [-1.0, -0.1, 0.0, 0.3, 2.0])
-def test_the_pressure_on_a_moving_piston_is_that_of_the_molecules_that_catch_it(s):
-    # kT = 1/2 and mass 1, so that the most probable speed is 1: 2 n m (v - u)^2 over v > u, over n kT.
-    pressed = integrate.quad(lambda v: 2.0 * (v - s) ** 2 * np.exp(-(v**2)) / np.sqrt(np.pi), s, np.inf)[0]
-    assert kinetic_gas.piston_pressure_ratio(s, 0.5, 1.0) == pytest.approx(pressed / 0.5, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -48,15 +31,6 @@ def test_the_pressure_on_a_moving_piston_is_that_of_the_molecules_that_catch_it(
 def test_the_standard_atmosphere_has_its_tabulated_pressure(height, hectopascal):
     # A table that says 226.321 is the US standard of 1976, whose air weighs 28.9644 g/mol, not 28.96442.
     assert theory.isa_pressure(height) / 100.0 == pytest.approx(hectopascal, abs=5e-4)
-
-
-def test_the_standard_atmosphere_above_the_tropopause():
-    heights = np.array([-2000.0, 11000.0, 15000.0, 32000.0, 47000.0, 51000.0, 71000.0, 80000.0])
-    temperatures = [301.15, 216.65, 216.65, 228.65, 270.65, 270.65, 214.65, 196.65]
-    assert np.allclose(theory.isa_temperature(heights), temperatures, rtol=1e-14)
-    pressures = theory.isa_pressure(heights)
-    # ISO 2533 and the US standard share these to four digits.
-    assert np.allclose(pressures[3:7], [868.02, 110.91, 66.939, 3.9564], rtol=5e-5)
 
 
 @pytest.mark.parametrize("lapse_rate", [9.8e-3, 6.5e-3, 1e-9, 0.0, -5e-3])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine import AttractingParcelSet, HeatBath, Periodic, RandomBath, Specular, SquareWell, random_positions
+from atmosbox.engine import AttractingParcelSet, Periodic, RandomBath, SquareWell, random_positions
 from atmosbox.scene.statistics import block_average
 from tests.oracle.well_energy import square_well_energy
 
@@ -143,27 +143,4 @@ def test_extreme_wells_keep_their_energy(well, kT, density):
     # molecules that fall into such deep wells become a thousand times as fast
     box.advance(10.0 / math.sqrt(max(kT, 1e-4 * well.depth)))
     assert box.contacts > 20
-    assert box.ledger() < 1e-12
-
-
-def test_the_floor_carries_the_weight_of_a_liquid_that_lies_on_it():
-    """Floor minus ceiling = N m g, a law of momentum: here over 60 units of time, between heat baths."""
-    number, gravity = 200, 0.2
-    random = np.random.default_rng(6)
-    walls = (*ROUND[:4], HeatBath(0.9), Specular())
-    position = random_positions((8.0, 8.0, 20.0), np.ones(number), random, periodic=(True, True, False))
-    box = AttractingParcelSet(
-        position, random.normal(size=(number, 3)), length=(8.0, 8.0, 20.0), walls=walls, well=SquareWell(),
-        gravity=gravity, bath=RandomBath(0.9, 0.1),
-    )  # fmt: skip
-    box.advance(40.0)
-    held = []
-    for frame in range(40):
-        before = box.wall_impulse
-        box.advance(40.0 + 3.0 * (frame + 1))
-        push = box.wall_impulse - before
-        held.append((push[4] - push[5]) / 3.0)
-    mean = block_average(held, 10)
-    assert abs(mean.mean - number * gravity) < 4.0 * mean.standard_error
-    assert mean.standard_error < 0.05 * number * gravity
     assert box.ledger() < 1e-12

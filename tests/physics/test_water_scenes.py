@@ -181,19 +181,6 @@ def test_saved_molecules_keep_their_number_and_have_no_place_in_the_liquid(scene
         assert (seen >= 0.0).all()
 
 
-def test_a_molecule_of_air_is_the_same_molecule_from_frame_to_frame():
-    # 2 ps a frame: at thermal speed a molecule flies a nanometre, in a box of thirty
-    outcome = runner.execute(
-        runner.prepare("condensation", {"molecules": 500, "humidity": 300.0, "duration": 0.48}, save_molecules=True)
-    )
-    place = outcome.dataset.molecule_position.values * 1e9
-    flown = np.sqrt(np.sum(np.diff(place, axis=0) ** 2, axis=2))
-    air = outcome.dataset.species.values == 0
-    assert air.sum() > 400
-    assert np.median(flown[:, air]) < 1.5
-    assert flown[:, air].max() < 6.0
-
-
 def test_the_pushes_of_molecules_on_droplets_that_flow_with_the_air_are_those_of_kinetic_theory():
     ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
     outside = np.geomspace(1e5, 3e4, 60)
