@@ -28,8 +28,7 @@ from atmosbox.file.netcdf import read, write
 from atmosbox.file.output_lock import ANOTHER_NAME
 from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.scene.settings import Parameter
-from atmosbox.simulation.preparation import prepare
-from atmosbox.simulation.runner import execute
+from atmosbox.simulation import runner
 from atmosbox.sweep.plan import Plan, Task
 from atmosbox.sweep.result import join, row
 
@@ -204,7 +203,7 @@ def _run(task: Task) -> Done:
         warnings.simplefilter("always")
         try:
             if not os.path.exists(task.path):  # a Dask worker that is killed may leave a file and no answer
-                write(execute(prepare(**task.asked)).dataset, task.path, force=True)
+                write(runner.execute(runner.prepare(**task.asked)).dataset, task.path, force=True)
         except FileError:
             raise
         except Exception as error:
