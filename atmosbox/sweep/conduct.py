@@ -28,8 +28,7 @@ from atmosbox.file.netcdf import read, write
 from atmosbox.file.output_lock import ANOTHER_NAME
 from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.scene.settings import Parameter
-from atmosbox.simulation.preparation import prepare
-from atmosbox.simulation.runner import execute
+from atmosbox.simulation import runner
 from atmosbox.sweep.plan import Plan, Task
 from atmosbox.sweep.result import join, row
 
@@ -184,17 +183,14 @@ def _take(out: str | os.PathLike[str], wanted: Mapping[str, Any], force: bool) -
 
 def is_taken(path: Path, plan: Plan) -> bool:
     """Return whether a file, or the folder of its runs, holds anything else than this sweep."""
-    folder = folder_of(path)
-    return (path.exists() or folder.exists()) and _request_in(folder) != plan.request()
+    return (path.exists() or folder_of(path).exists()) and _request_in(folder_of(path)) != plan.request()
 
 
 def _request_in(folder: Path) -> dict[str, Any] | None:
     """Return what determines the runs in a folder; None if it is not the folder of a sweep."""
-    try:
-        made: dict[str, Any] = json.loads((folder / REQUEST).read_bytes())
-    except (OSError, ValueError):
-        return None
-    return made
+    with suppress(OSError, ValueError):
+        return dict(json.loads((folder / REQUEST).read_bytes()))
+    return None
 
 
 def _run(task: Task) -> Done:
@@ -204,7 +200,7 @@ def _run(task: Task) -> Done:
         warnings.simplefilter("always")
         try:
             if not os.path.exists(task.path):  # a Dask worker that is killed may leave a file and no answer
-                write(execute(prepare(**task.asked)).dataset, task.path, force=True)
+                write(runner.execute(runner.prepare(**task.asked)).dataset, task.path, force=True)
         except FileError:
             raise
         except Exception as error:
@@ -216,6 +212,8 @@ def _as_completed(pool: futures.Executor, tasks: Sequence[Task]) -> Generator[Do
     """Submit all runs, and yield each as it ends; one that kills its worker again and again has failed."""
     running = {pool.submit(_run, task): task for task in tasks}
     for future in futures.as_completed(running):
+        if future.cancelled():
+            raise EngineError("The scheduler was lost: type the same again to go on.")
         error = future.exception()
         if error is None or isinstance(error, FileError | BrokenProcessPool):
             yield future.result()
@@ -235,7 +233,7 @@ def _in_processes(tasks: Sequence[Task], jobs: int) -> Generator[Done]:
         before = set(multiprocessing.active_children())
         pool = futures.ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=_begin)
         try:
-            _check(pool)
+            _check_begun(pool)
             for done in _as_completed(pool, batch):
                 waiting.remove(done[0])
                 yield done
@@ -251,7 +249,7 @@ def _in_processes(tasks: Sequence[Task], jobs: int) -> Generator[Done]:
         suspects = max(suspects - 1, 0)
 
 
-def _check(pool: futures.Executor) -> None:
+def _check_begun(pool: futures.Executor) -> None:
     """Refuse to go on if a process that has nothing to do yet dies."""
     try:
         pool.submit(cores).result()
@@ -293,7 +291,4 @@ def _on_cluster(tasks: Sequence[Task], address: str) -> Generator[Done]:
             problem = f"needs workers with atmosbox {here}, and has {', '.join(sorted(set(there))) or 'none'}"
             fix = f"type pip install atmosbox=={here}, then dask worker {address} --nworkers auto --nthreads 1"
             raise SettingError("scheduler", address, problem, fix)
-        try:
-            yield from _as_completed(client.get_executor(pure=False), tasks)
-        except futures.CancelledError:
-            raise EngineError(f"The scheduler {address} was lost: type the same again to go on.") from None
+        yield from _as_completed(client.get_executor(pure=False), tasks)

@@ -74,18 +74,15 @@ def parse_vary(items: Iterable[str], settings: type[SceneSettings]) -> dict[str,
             error.instead_of_settings(lambda part: Option("vary", {part.name: str(part.value)}))
             raise
         except SettingError as error:
-            error.remedy = _instead(parameters[name])
+            error.remedy = (_instead(parameters[name]),)
             raise
     return made
 
 
-def _instead(parameter: Parameter) -> tuple[Option | str, ...]:
+def _instead(parameter: Parameter) -> Option:
     """Return what to give instead."""
-    if parameter.kind in ("int", "float"):
-        example = Option("vary", {parameter.name: "a:b:n"})
-        return example, f" or x,y,z, such as {parameter.typed(parameter.default)}"
-    allowed = ("on", "off") if parameter.kind == "bool" else parameter.choices or (str(parameter.default),)
-    return (Option("vary", {parameter.name: ",".join(allowed)}),)
+    words = ("on", "off") if parameter.kind == "bool" else parameter.choices or (str(parameter.default),)
+    return Option("vary", {parameter.name: "a:b:n" if parameter.kind in ("int", "float") else ",".join(words)})
 
 
 def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
@@ -103,12 +100,10 @@ def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
     """Return n values from a to b for the text a:b:n or a:b:nlog."""
     *ends, last = (part.strip() for part in text.split(":"))
     count = last.removesuffix("log").rstrip()
-    if len(ends) != 2 or not count.isdecimal() or len(count) > 9:
-        raise UnitError(parameter.name, text, "is neither a:b:n, a:b:nlog nor x,y,z")
-    low, high = sorted(float(parameter.parse(end)) for end in ends)
+    if len(ends) != 2 or not count.isdecimal() or not 2 <= int(count[:7]) <= MOST_RUNS:
+        raise UnitError(parameter.name, text, f"is neither a:b:n, with n from 2 to {MOST_RUNS}, a:b:nlog nor x,y,z")
     n = int(count)
-    if not 2 <= n <= MOST_RUNS:
-        raise SettingError(parameter.name, text, f"asks for {n} values, and from 2 to {MOST_RUNS} are possible")
+    low, high = sorted(float(parameter.parse(end)) for end in ends)
     if not last.endswith("log"):
         inner = np.linspace(low, high, n)[1:-1].tolist()
     elif (start := to_si(low, parameter.unit)) > 0.0:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,7 +24,7 @@ FEWEST = 4
 """Least number of members whose scatter gives the standard error of their mean."""
 
 Floats = NDArray[np.float64]
-Key: TypeAlias = tuple[int, int]
+Key = tuple[int, int]
 """Point and member of a run, counted from 1."""
 
 _STATES = ("complete", "failed", "missing")
@@ -179,15 +179,11 @@ def _headline(name: str, about: dict[str, Any], found: list[Floats], dims: tuple
 def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], command: str) -> dict[str, Any]:
     """Return the global attributes of the file of a sweep."""
     engines = " and ".join(sorted({str(each.engine) for each in plan.prepared}))
-    parameters: dict[str, Any] = {
-        "scene": plan.scene,
-        "settings": plan.defaults,
-        "engine": engines,
-        "version": __version__,
-    }
+    parameters: dict[str, Any] = {"scene": plan.scene, "settings": plan.defaults, "engine": engines}
     vary = {name: list(values) for name, values in plan.vary.items()}
     grid = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
-    parameters |= {"save_molecules": False, "sweep": grid | {"accuracy": plan.accuracy, "headlines": names}}
+    parameters |= {"version": __version__, "save_molecules": False}
+    parameters["sweep"] = grid | {"accuracy": plan.accuracy, "headlines": names}
     *others, last = [name.replace("_", " ") for name in plan.vary]
     return global_attributes(
         parameters,

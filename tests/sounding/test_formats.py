@@ -82,59 +82,31 @@ def test_a_text_of_sharppy_is_read_without_the_level_below_the_ground(written, s
 
 # IGRA
 
-LEVELS = [  # major and minor type, pressure [Pa], height [m], temperature and dewpoint depression [0.1 K]
-    (2, 1, 97200, 345, 243, 51),
-    (1, 0, 92500, 782, 212, 42),
-    (2, 0, 86000, -9999, 176, 64),
-    (1, 0, 85000, 1510, 180, 85),
-    (1, 0, 70000, 3150, 88, 120),
-    (3, -9, -9999, 4000, -9999, -9999),
-    (1, 0, 50000, 5860, -77, 150),
-    (1, 0, 30000, 9600, -341, -8888),
-    (1, 0, 20000, 12300, -545, -9999),
-]
-
-
-def header(number, hour="00"):
-    return f"#USM00072357 2014 09 10 {hour} 2301 {number:4d} ncdc-gts ncdc-gts  352211   -974647"
-
-
-def row(major, minor, pressure, height, temperature, depression):
-    """Return a record as ``igra2-data-format.txt`` lays it out: RH, wind and flags stand between what is read."""
-    kind = f"{major}{minor}" if minor >= 0 else f"{major}0"
-    return f"{kind} {-9999:5d} {pressure:6d}B{height:5d}B{temperature:5d}B{-9999:5d} {depression:5d} {160:5d} {51:5d} "
-
-
-@pytest.fixture
-def lines():
-    return [header(len(LEVELS)), *(row(*level) for level in LEVELS)]
-
-
-def test_records_of_the_archive_itself_are_read(written):
-    """The first five of 66 levels of a sounding over Edwards, California."""
-    text = """
-#USM00072381 2026 07 22 17 1700    5 ncdc-gts ncdc-gts  349167 -1179000
+EDWARDS = """
+#USM00072381 2026 07 22 17 1700    7 ncdc-gts ncdc-gts  349167 -1179000
 21 -9999  93200B-9999   336B-9999   230   240    46
 20 -9999  92700 -9999   314B-9999   210 -9999 -9999
 10 -9999  92500   798B  316B-9999   210   275    46
 10 -9999  85000  1541B  244B-9999   160   300    26
 20 -9999  80300 -9999   206B-9999   130 -9999 -9999
+30 -9999  -9999  4000B-9999 -9999 -9999   160    51
+10 -9999  70000  3150B   88B-9999 -8888   160    51
 """
-    sounding = read(written([f"{line} " for line in text.split("\n")[1:-1]]))
-    assert sounding.name == "USM00072381 2026-07-22 17 UTC"
-    assert list(sounding.pressure) == [93200.0, 92700.0, 92500.0, 85000.0, 80300.0]
-    assert list(sounding.temperature - 273.15) == pytest.approx([33.6, 31.4, 31.6, 24.4, 20.6])
-    assert list(sounding.temperature - sounding.dewpoint) == pytest.approx([23.0, 21.0, 21.0, 16.0, 13.0])
+"""The first levels of a sounding over Edwards, California; the last two, made up, are of wind and without dewpoint."""
+
+
+@pytest.fixture
+def lines():
+    return [f"{line} " for line in EDWARDS.split("\n")[1:-1]]
 
 
 def test_a_sounding_is_read_with_its_missing_values(written, lines):
     sounding = read(written(lines))
-    assert sounding.name == "USM00072357 2014-09-10 00 UTC"
-    assert [round(p / 100) for p in sounding.pressure] == [972, 925, 860, 850, 700, 500, 300, 200]
-    assert sounding.temperature[0] - 273.15 == pytest.approx(24.3)
-    assert sounding.dewpoint[0] - 273.15 == pytest.approx(19.2)
-    assert sounding.temperature[-1] - sounding.dewpoint[-1] == pytest.approx(30.0)
+    assert sounding.name == "USM00072381 2026-07-22 17 UTC"
     assert sounding.source.endswith("IGRA version 2")
+    assert list(sounding.pressure) == [93200.0, 92700.0, 92500.0, 85000.0, 80300.0, 70000.0]
+    assert list(sounding.temperature - 273.15) == pytest.approx([33.6, 31.4, 31.6, 24.4, 20.6, 8.8])
+    assert list(sounding.temperature - sounding.dewpoint) == pytest.approx([23.0, 21.0, 21.0, 16.0, 13.0, 30.0])
     assert sounding.remarks[0] == "1 level without pressure or temperature left out."
 
 
@@ -228,14 +200,8 @@ def test_a_file_without_one_profile_is_refused_in_a_sentence(dataset, saved):
     cases = [
         (lambda d: d.drop_vars("b"), 'no variable is the dewpoint: give one the standard_name "dew_point_temperature"'),
         (lambda d: d.expand_dims(time=[0.0, 1.0]), "the temperature in a is not one value for each level .* time = 2"),
-        (
-            lambda d: d.isel(level=0),
-            "the pressure in level is not one value for each level of the pressure, for it has no dimension",
-        ),
-        (
-            lambda d: d.assign(b=d.b.rename(level="other")),
-            "the dewpoint in b is not one value for each level of the pressure, for it has other = 12",
-        ),
+        (lambda d: d.isel(level=0), "the pressure in level is not one value for each level .* it has no dimension"),
+        (lambda d: d.assign(b=d.b.rename(level="other")), "the dewpoint in b is not one value .* it has other = 12"),
         (lambda d: d.assign(a=d.a.copy(data=["warm"] * 12)), "a holds no numbers"),
         (lambda d: d.assign(a=d.a.where(d.level > 200, np.inf)), "level 11: a temperature of inf degC does not occur"),
         (lambda d: d.assign(b=d.b + 20.0), "level 1: the dewpoint of .* degC is above the temperature"),
@@ -322,9 +288,9 @@ REFUSED = [
     ("wyoming", lambda lines: [*lines[:2], *lines[3:]], "line 2: no line of units follows the names of the columns"),
     ("sharppy", lambda lines: lines[:-1], "there is no %END%, so the file is cut off"),
     ("sharppy", lambda lines: [*lines[:9], lines[9].rpartition(",")[0], *lines[10:]], "line 10: there are 5 of 6"),
-    ("igra", lambda lines: lines[:-3], "line 8: the header announces 9 levels, and 6 are whole"),
-    ("igra", lambda lines: [*lines[:2], lines[2][:30], *lines[3:]], "line 3: the header announces 9 levels, and 1 are"),
-    ("igra", instead("  212", " x212"), "line 3: the temperature x212 is not a number"),
+    ("igra", lambda lines: lines[:-3], "line 6: the header announces 7 levels, and 4 are whole"),
+    ("igra", lambda lines: [*lines[:2], lines[2][:30], *lines[3:]], "line 3: the header announces 7 levels, and 1 are"),
+    ("igra", instead("  314", " x314"), "line 3: the temperature x314 is not a number"),
     ("bufkit", lambda lines: lines[: lines.index(COLUMNS) + 11], "8 of 9 values"),
     ("bufkit", instead("DWPC", "RELH"), "there is no dewpoint"),
     ("bufkit", lambda lines: lines[: lines.index(COLUMNS)], "no table has the columns"),
