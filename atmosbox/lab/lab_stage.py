@@ -139,7 +139,7 @@ def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setu
         axis, other = ("x", "y") if panel["across"] else ("y", "x")
         lines = [line for line in panel["lines"] if line["role"] == "data" and "minus" not in line]
         line = next((each for each in lines if each[axis]["name"] == name and each[other]["name"] in ends), None)
-        if line is None or panel["kind"] not in ("line", "profile"):
+        if line is None or panel["kind"] not in ("line", "profile") or panel[axis]["log"]:
             continue
         measured, along = (
             line[each] | {"unit": declared(line[each]["name"], setup.time_unit).unit} for each in (axis, other)

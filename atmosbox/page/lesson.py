@@ -23,7 +23,8 @@ They are read from a file beside the scene, ``my_scene.live.toml``, which contai
 
 A task is done when in both halves of so many frames the mean of each variable is within the given distance of its
 value: what only passes the value is not there. What a class may draw as its prediction is the first variable of
-``draw``, at first in this range; a second one is what it is drawn along, as elapsed_time = ["0 ns", "2 ns"]. A preset begins the box again with its settings, and those of the page for the rest.
+``draw``, at first in this range; a second one is what it is drawn along, as elapsed_time = ["0 ns", "2 ns"]. A preset
+begins the box again with its settings, and those of the page for the rest.
 """
 
 from __future__ import annotations
@@ -132,9 +133,7 @@ def lesson_of(module: ModuleType) -> Lesson:
                 f"{path}: right of predict must be the number of a choice, from 1 to {len(each['choices'])}."
             )
         if "draw" in each:
-            each["draw"] = {
-                name: _quantities(path, name, ends, "a prediction") for name, ends in each["draw"].items()
-            }
+            each["draw"] = {name: _quantities(path, name, ends, "a prediction") for name, ends in each["draw"].items()}
     tasks = _entries(path, [told[name] for name in ("task",) if name in told], "task")
     return Lesson(
         str(told.get("story", "")).strip(),
@@ -147,8 +146,9 @@ def lesson_of(module: ModuleType) -> Lesson:
 def _entries(path: Path, entries: Any, kind: str) -> list[dict[str, Any]]:
     """Return the entries of a kind; refuse one that lacks something or has something else."""
     for number, entry in enumerate(entries if isinstance(entries, list) else [None], 1):
-        if not isinstance(entry, dict) or not _KNOWN[kind] <= set(entry) <= _KNOWN[kind] | _MAY.get(kind, set()):
-            wanted = ", ".join(sorted(_KNOWN[kind]))
+        may = _MAY.get(kind, set())
+        if not isinstance(entry, dict) or not _KNOWN[kind] <= set(entry) <= _KNOWN[kind] | may:
+            wanted = ", ".join([*sorted(_KNOWN[kind]), *(f"may have {name}" for name in may)])
             raise ConfigError(f"{path}: {kind} {number} must have {wanted}, and nothing else.")
     return list(entries)
 

@@ -443,7 +443,7 @@ class Box {
   // Begin the run of a link, whose knobs turn by themselves.
   async open(link) {
     const [all, own, version, scene, settings, seed, turns, drawn, points, frames] = (link.length < 200_000 && LINK.exec(link)) || [];
-    const prediction = points?.split(",").map(Number) ?? null, wanted = this.told.lesson.predict?.draw;
+    const prediction = points?.split(",").map((each) => (each ? Number(each) : NaN)) ?? null, wanted = this.told.lesson.predict?.draw;
     const unread = prediction && (prediction.length !== wanted?.along.places.length || !prediction.every(Number.isFinite) || drawn !== wanted.measured.name);
     const mine = this.plan.link.split("&"), coming = (turns?.split(",") ?? []).map((each) => TURN.exec(each));
     if (!all || coming.includes(null) || Number(frames) > LONGEST || coming.length > MOST_TURNS || !Number.isSafeInteger(Number(seed))) {

@@ -2,7 +2,7 @@
 // dragged, or moved by the arrow keys. While it is drawn, nothing that was measured is shown.
 
 import { curveColour } from "./colour.js";
-import { round, withUnit } from "./figure.js";
+import { round } from "./figure.js";
 import { phrase, word } from "./words.js";
 
 const STEPS = 100; // least number of steps across the range in which a class draws
@@ -15,8 +15,9 @@ const make = (kind, fields = {}, ...children) => {
   element.append(...children);
   return element;
 };
-const tell = (element, told) => Object.entries(told).forEach(([name, value]) => element.setAttribute(`aria-${name}`, value));
+const tell = (element, names) => Object.entries(names).forEach(([name, value]) => element.setAttribute(`aria-${name}`, value));
 const button = (key, onclick, more = {}) => make("button", { type: "button", textContent: word(key), onclick, ...more });
+const told = (value, unit) => `${round(Number(value.toPrecision(4)))} ${unit}`.trim();
 const wider = ([low, high], share) => [low - share * (high - low), high + share * (high - low)];
 
 // A smooth curve through points at equal distances, which turns only at points (Fritsch and Butland 1984).
@@ -96,7 +97,7 @@ export class Prediction {
       graph.element.classList.toggle("asked", open);
       graph.element.classList.toggle("predicted", !open && Boolean(values));
       const { panel } = graph, measured = panel[panel.across ? "x" : "y"];
-      graph.part("strong").textContent = open ? `${word("draw")}: ${this.#named(phrase(measured.label))}` : phrase(panel.title);
+      graph.part("strong").textContent = open ? `${word("predict")}: ${this.#named(phrase(measured.label))}` : phrase(panel.title);
       graph.fixed = null;
       if (open) this.#open();
     } else this.buttons.replaceChildren();
@@ -114,12 +115,12 @@ export class Prediction {
     Object.assign(this, { axis: panel.across ? "x" : "y", other: panel.across ? "y" : "x" });
     this.done = button("draw_done", () => this.#end(this.draft), { className: "main" });
     const cancel = this.asked && !this.values ? [] : [button("cancel", () => this.#end(this.values))];
-    this.bar = make("div", { className: "drawing" }, make("p", { textContent: word("draw_how") }), this.done, ...cancel);
+    this.bar = make("div", { className: "drawing" }, make("span", {}, this.done, ...cancel), make("p", { textContent: word("draw_how") }));
     part("figcaption").append(this.bar);
     this.handles = along.places.map((value, place) => {
       const handle = make("div", { className: "handle", tabIndex: 0, onkeydown: (event) => this.#press(event, place) });
       handle.setAttribute("role", "slider");
-      tell(handle, { orientation: panel.across ? "horizontal" : "vertical", label: `${phrase(panel[this.other].label)} ${withUnit(value, panel[this.other].unit)}` });
+      tell(handle, { orientation: panel.across ? "horizontal" : "vertical", label: `${phrase(panel[this.other].label)} ${told(value, panel[this.other].unit)}` });
       return handle;
     });
     this.layer = make("div", { className: "handles" }, ...this.handles);
@@ -160,7 +161,7 @@ export class Prediction {
     this.handles.forEach((handle, place) => {
       const at = { [axis]: this.#share(axis, draft[place]), [other]: this.#share(other, places[place]) };
       Object.assign(handle.style, { left: `${100 * at.x}%`, bottom: `${100 * at.y}%` });
-      tell(handle, { valuemin: low, valuemax: high, valuenow: draft[place], valuetext: `${round(draft[place])} ${graph.panel[axis].unit}`.trim() });
+      tell(handle, { valuemin: low, valuemax: high, valuenow: draft[place], valuetext: told(draft[place], graph.panel[axis].unit) });
     });
     this.graphs.refresh();
   }
