@@ -134,7 +134,8 @@ def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setu
     ends["height"] = (0.0, float(setup.parcel.length[2]) * setup.scale.length)
     ends |= {key: (values[0], values[-1]) for key, values in _planned_ascent(setup).items() if key != _TIME}
     ends |= dict(others)
-    ends[_TIME] = tuple(each / to_si(1.0, setup.time_unit) for each in ends[_TIME])
+    begin, end = _shown(ends[_TIME], {"factor": 1.0 / to_si(1.0, setup.time_unit), "offset": 0.0})
+    ends[_TIME] = begin, end
     for number, panel in enumerate(panels):
         axis, other = ("x", "y") if panel["across"] else ("y", "x")
         lines = [line for line in panel["lines"] if line["role"] == "data" and "minus" not in line]
@@ -144,12 +145,13 @@ def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setu
         measured, along = (
             line[each] | {"unit": declared(line[each]["name"], setup.time_unit).unit} for each in (axis, other)
         )
-        places = (np.geomspace if panel[other]["log"] else np.linspace)(*_shown(ends[along["name"]], along), _HANDLES)
+        first, last = _shown(ends[along["name"]], along)
+        spaced = np.geomspace if panel[other]["log"] else np.linspace
         return {
             "graph": number,
             "label": line["label"] if len(lines) > 1 else "",
             "measured": measured | {"range": plain(_shown(span, measured))},
-            "along": along | {"places": plain(places)},
+            "along": along | {"places": plain(spaced(first, last, _HANDLES))},
         }
     return None
 

@@ -133,6 +133,8 @@ def lesson_of(module: ModuleType) -> Lesson:
                 f"{path}: right of predict must be the number of a choice, from 1 to {len(each['choices'])}."
             )
         if "draw" in each:
+            if not isinstance(each["draw"], dict) or len(each["draw"]) not in (1, 2):
+                raise ConfigError(f"{path}: draw of predict must have a variable, and at most what it is drawn along.")
             each["draw"] = {name: _quantities(path, name, ends, "a prediction") for name, ends in each["draw"].items()}
     tasks = _entries(path, [told[name] for name in ("task",) if name in told], "task")
     return Lesson(

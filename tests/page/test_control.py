@@ -64,6 +64,7 @@ def test_a_file_that_makes_no_sense_is_refused_in_a_sentence(tmp_path):
         (TASK.format("nonsense = ['300 K', '1 K']"), "nonsense of a task"),
         ("[predict]\nask = 'x'\nwhy = 'y'\nchoices = ['a', 'b']\nright = 3", "from 1 to 2"),
         (PREDICT + "draw = {air_temperature = ['0 degC', '3 hPa']}", "air_temperature of a prediction cannot be read"),
+        (PREDICT + "draw = 3", "draw of predict must have a variable, and at most"),
         (PREDICT + "drawn = 3", "predict 1 must have ask, choices, right, why, may have draw, and nothing else"),
         ("= 3", "is not TOML"),
     ]:
