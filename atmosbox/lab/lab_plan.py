@@ -12,7 +12,7 @@ from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.kernels.pulling import can_pull
 from atmosbox.lab.lab_box import LabBox, lab_box
-from atmosbox.lab.lab_stage import COLDER, lab_stage, plain, running_panels
+from atmosbox.lab.lab_stage import COLDER, drawing, lab_stage, plain, running_panels
 from atmosbox.lab.memory_image import BASE, Image, image
 from atmosbox.lab.moist_plan import (
     DROP_STATE,
@@ -117,7 +117,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
             "stage": stage.record,
             "controls": knob_controls(found),
             "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
-            "lesson": _lesson(prepared, series, setup.time_unit),
+            "lesson": _lesson(prepared, series, setup, stage.record["panels"]),
         },
         "base": BASE,
         "size": memory.size,
@@ -253,19 +253,22 @@ def _readings(box: LabBox) -> list[tuple[str, int, float]]:
     return [(name, int(place), float(factor)) for name, place, factor in found]
 
 
-def _lesson(prepared: Prepared, series: set[str], time_unit: str) -> dict[str, Any]:
+def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
     """Return question and task of the scene, without a task whose variables the page does not have; no presets."""
     lesson = lesson_of(prepared.module)
-    task = lesson.task
+    task, predict = lesson.task, dict(lesson.predict or {})
+    found: dict[str, Any] = {"presets": [], "predict": predict or None, "task": None}
+    if "draw" in predict:
+        predict["draw"] = drawing(predict["draw"], panels, setup)
     if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
-        return {"presets": [], "predict": lesson.predict, "task": None}
-    units = {_TIME: _SECONDS[time_unit]}  # all other variables of the page are in SI
+        return found
+    units = {_TIME: _SECONDS[setup.time_unit]}  # all other variables of the page are in SI
     scaled = [(goal, units.get(goal["name"], 1.0)) for goal in task["reach"]]
     reach = [
         goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
         for goal, by in scaled
     ]
-    return {"presets": [], "predict": lesson.predict, "task": {**task, "reach": reach}}
+    return found | {"task": {**task, "reach": reach}}
 
 
 def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:

@@ -50,7 +50,7 @@ MODULES = (
 
 _ENTRIES = {
     "view": ("view.js",),
-    "lab": ("controls.js", "player.js", "gauges.js", "lesson.js", "engine.js", "link.js", "lab.js"),
+    "lab": ("controls.js", "player.js", "gauges.js", "lesson.js", "prediction.js", "engine.js", "link.js", "lab.js"),
 }
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 

@@ -9,6 +9,7 @@ They are read from a file beside the scene, ``my_scene.live.toml``, which contai
     choices = ["5 K", "50 K"]
     right = 2
     why = "T ~ p^(2/7): 50 K."
+    draw = {parcel_temperature = ["-90 degC", "30 degC"]}
 
     [task]
     ask = "Keep the parcel at 700 hPa."
@@ -21,8 +22,9 @@ They are read from a file beside the scene, ``my_scene.live.toml``, which contai
     set = {temperature = "-40 degC"}
 
 A task is done when in both halves of so many frames the mean of each variable is within the given distance of its
-value: what only passes the value is not there. A preset begins the box again with its settings, and those of the page
-for the rest.
+value: what only passes the value is not there. What a class may draw as its prediction is the first variable of
+``draw``, at first in this range; a second one is what it is drawn along, as elapsed_time = ["0 ns", "2 ns"]. A preset
+begins the box again with its settings, and those of the page for the rest.
 """
 
 from __future__ import annotations
@@ -48,7 +50,7 @@ _KNOWN = {
 }
 
 
-_COUNT = {"unit": "", "factor": 1.0, "offset": 0.0}
+_MAY = {"predict": {"draw"}}
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,8 @@ class Lesson:
     story
         Two sentences on what it shows.
     predict, task
-        As data for the page: the question with its choices, the task with the values to reach and their tolerances.
+        As data for the page: the question with its choices and the ranges of ``draw`` in SI, the task with the values
+        to reach and their tolerances.
     presets
         Settings to try.
     """
@@ -129,6 +132,10 @@ def lesson_of(module: ModuleType) -> Lesson:
             raise ConfigError(
                 f"{path}: right of predict must be the number of a choice, from 1 to {len(each['choices'])}."
             )
+        if "draw" in each:
+            if not isinstance(each["draw"], dict) or len(each["draw"]) not in (1, 2):
+                raise ConfigError(f"{path}: draw of predict must have a variable, and at most what it is drawn along.")
+            each["draw"] = {name: _quantities(path, name, ends, "a prediction") for name, ends in each["draw"].items()}
     tasks = _entries(path, [told[name] for name in ("task",) if name in told], "task")
     return Lesson(
         str(told.get("story", "")).strip(),
@@ -141,8 +148,9 @@ def lesson_of(module: ModuleType) -> Lesson:
 def _entries(path: Path, entries: Any, kind: str) -> list[dict[str, Any]]:
     """Return the entries of a kind; refuse one that lacks something or has something else."""
     for number, entry in enumerate(entries if isinstance(entries, list) else [None], 1):
-        if not isinstance(entry, dict) or set(entry) != _KNOWN[kind]:
-            wanted = ", ".join(sorted(_KNOWN[kind]))
+        may = _MAY.get(kind, set())
+        if not isinstance(entry, dict) or not _KNOWN[kind] <= set(entry) <= _KNOWN[kind] | may:
+            wanted = ", ".join([*sorted(_KNOWN[kind]), *(f"may have {name}" for name in may)])
             raise ConfigError(f"{path}: {kind} {number} must have {wanted}, and nothing else.")
     return list(entries)
 
@@ -151,19 +159,25 @@ def _task(path: Path, entry: Mapping[str, Any]) -> dict[str, Any]:
     """Return a task, with its values in SI and the conversion to the units in which they were given."""
     goals = []
     for name, wanted in entry["reach"].items():
-        try:
-            units = variable(name).units or "1"
-            (value, unit), (width, of_width) = (number_and_unit(each) for each in wanted)
-            if not unit:  # a count
-                goals.append({"name": name, "target": float(value), "within": float(width), **_COUNT})
-                continue
-            target, within = converted(float(value), unit, units), converted(float(width), of_width, units)
-        except (KeyError, TypeError, ValueError) as error:
-            raise ConfigError(
-                f"{path}: {name} of a task cannot be read ({error}): "
-                'give a variable of the file, and two quantities as in ["300 hPa", "3 hPa"].'
-            ) from error
-        zero = from_si(0.0, unit)
-        way = {"unit": unit, "factor": from_si(1.0, unit) - zero, "offset": zero}
+        target, within = _quantities(path, name, wanted, "a task")
+        _, unit = number_and_unit(wanted[0])
+        zero = from_si(0.0, unit) if unit else 0.0
+        way = {"unit": unit, "factor": from_si(1.0, unit) - zero if unit else 1.0, "offset": zero}
         goals.append({"name": name, "target": target, "within": within, **way})
     return {**entry, "reach": goals}
+
+
+def _quantities(path: Path, name: str, wanted: Any, whose: str) -> tuple[float, float]:
+    """Return two values of a variable in its unit; those without a unit are counts or shares."""
+    try:
+        units = variable(name).units or "1"
+        first, last = (
+            converted(float(number), unit, units) if unit else float(number)
+            for number, unit in map(number_and_unit, wanted)
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise ConfigError(
+            f"{path}: {name} of {whose} cannot be read ({error}): "
+            'give a variable of the file, and two quantities as in ["300 hPa", "3 hPa"].'
+        ) from error
+    return first, last

@@ -6,7 +6,9 @@ is parsed strictly, holds numbers and names alone, and never names a file or a p
     #atmosbox=0.2.0&scene=temperature&molecules=400&seed=7&turns=60:temperature:120,90:temperature:start&frames=150&end
 
 Each turn has the number of frames that were complete, the knob, and its new value in the unit of the knob, or "start"
-if it went back to how it was before its first turn. ``frames`` is how far the run had come.
+if it went back to how it was before its first turn. ``frames`` is how far the run had come. Before it may stand what a
+class predicted, ``predict=air_temperature:-70,-20,10,20,25``: a variable, and five values in the unit of its graph. It
+is for the page, and changes nothing here.
 """
 
 from __future__ import annotations
@@ -35,10 +37,13 @@ _MOST_FRAMES = 1_000_000
 _SAID = 20  # turns that the comment of a file names
 _LINK = re.compile(
     r"atmosbox=(?P<version>[\w.+-]{1,30})&scene=(?P<scene>[\w.%~-]{1,300})(?P<settings>(?:&\w+=[\w.%~-]*)*)"
-    r"&seed=(?P<seed>[0-9]{1,16})(?:&turns=(?P<turns>[\w:,.+-]+))?&frames=(?P<frames>[0-9]{1,7})&end",
+    r"&seed=(?P<seed>[0-9]{1,16})(?:&turns=(?P<turns>[\w:,.+-]+))?(?:&predict=(?P<prediction>[\w:,.+-]+))?"
+    r"&frames=(?P<frames>[0-9]{1,7})&end",
     re.ASCII,
 )
-_TURN = re.compile(r"([0-9]{1,7}):(\w+):(start|-?[0-9]+(?:\.[0-9]+)?(?:e[+-]?[0-9]+)?)", re.ASCII)
+_NUMBER = r"-?[0-9]+(?:\.[0-9]+)?(?:e[+-]?[0-9]+)?"
+_TURN = re.compile(rf"([0-9]{{1,7}}):(\w+):(start|{_NUMBER})", re.ASCII)
+_PREDICTION = re.compile(rf"\w+:{_NUMBER}(?:,{_NUMBER}){{4}}", re.ASCII)
 
 
 class Turn(NamedTuple):
@@ -164,6 +169,8 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
         refuse(text, "has turns of knobs that cannot be read")
     if max(frames, *(turn.frame for turn in made), 0) > _MOST_FRAMES:
         refuse(text, f"is of more than {_MOST_FRAMES} frames")
+    if found["prediction"] and not _PREDICTION.fullmatch(found["prediction"]):
+        refuse(text, "has a prediction that cannot be read: it needs a variable and five numbers")
     pairs = [each.split("=") for each in found["settings"].split("&")[1:]]
     settings = {name: unquote(value) for name, value in pairs}
     if len(settings) < len(pairs):

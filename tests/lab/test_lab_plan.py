@@ -8,11 +8,13 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
+from atmosbox.lab.lab_stage import drawing, lab_stage, running_panels
 from atmosbox.lab.lab_start import served_start
 from atmosbox.lab.memory_image import parts
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.wasm_module import SCENES
+from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import build, prepare
 from atmosbox.simulation.recording import Recording
@@ -108,6 +110,21 @@ def is_done(task, found):
         halves = np.split(values, [number // 2], axis=1) if number > 1 else [values]
         near &= np.all([np.abs(half.mean(axis=1) - goal["target"]) <= goal["within"] for half in halves], axis=0)
     return bool(near.any())
+
+
+def test_what_a_class_may_draw_is_on_a_graph_of_the_scene():
+    found = {}
+    for scene in scenarios.names():
+        prepared = prepare(scene, SCENES[scene] | {"molecules": 200 if scene != "elastic-collisions" else 20})
+        if "draw" in lesson_of(prepared.module).predict:
+            setup = build(prepared)
+            panels = lab_stage(prepared, setup, running_panels(prepared))[0].record["panels"]
+            drawn = drawing(lesson_of(prepared.module).predict["draw"], panels, setup)
+            found[scene] = drawn["along"]["name"], drawn["along"]["places"][-1], drawn["measured"]["range"]
+    assert len(found) == 11
+    assert found["temperature"] == ("elapsed_time", 1.0, [-80.0, 60.0])
+    assert found["lifting-moist"] == ("parcel_pressure", 300.0, [-60.0, 40.0])  # hPa: not that of time
+    assert found["atmosphere"] == ("height", 25.0, [-80.0, 60.0])
 
 
 QUICK = ("temperature", "elastic-collisions")

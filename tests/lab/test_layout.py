@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from atmosbox import scenarios
@@ -92,6 +93,34 @@ def test_on_every_screen_nothing_is_cut_off_or_lies_on_another_and_all_can_be_re
                     faults += [f"menu: {each}" for each in page.evaluate(FAULTS) if not each.startswith("the ")]
                     page.click("#menu")
                 found += [f"{language} {theme} {width} x {height}: {fault}" for fault in faults]
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize("scene", [_tier("temperature"), _tier("lifting-sounding"), _tier("convection")])
+def test_a_prediction_can_be_drawn_on_every_screen(opened, scene):
+    page, found = opened(scene), []
+    speak(page, "de")
+    page.locator("#lesson .choices button").nth(3).click()
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(400)
+        page.locator(".asked").scroll_into_view_if_needed()
+        boxes = [each.bounding_box() for each in page.locator(".handle").all()]
+        centres = np.array([(each["x"] + each["width"] / 2, each["y"] + each["height"] / 2) for each in boxes])
+        faults = page.evaluate(FAULTS)
+        if min(min(each["width"], each["height"]) for each in boxes) < 24.0:
+            faults.append("the handles are too small")
+        if np.hypot(*np.diff(centres, axis=0).T).min() < 24.0:
+            faults.append("the handles are too close")
+        if centres[:, 0].min() < 12.0 or centres[:, 0].max() > width - 12.0:
+            faults.append("the handles are cut off")
+        found += [f"drawing {width} x {height}: {fault}" for fault in faults]
+    page.locator(".handle").first.press("PageUp")
+    page.locator(".asked .main").click()
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(400)
+        found += [f"drawn {width} x {height}: {fault}" for fault in page.evaluate(FAULTS)]
     assert not found, "\n".join(found)
 
 

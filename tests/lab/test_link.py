@@ -70,7 +70,7 @@ def lab(usual_tab, tmp_path):
 def link_of(shown):
     """Return the link of the run in a page."""
     shown.page.click("#link")
-    text = shown.page.input_value("#linked")
+    text = shown.page.input_value("dialog[open] #linked")  # not that of an earlier link
     shown.page.keyboard.press("Escape")
     command, link = text.split("\n")  # for a page that was opened from a file
     assert shlex.split(command) == ["atmosbox", "run", "--replay", link]
@@ -172,6 +172,9 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
         (":60", ":60" + ",3:temperature:60" * 5_000, "has turns of knobs that cannot be read"),  # too many
         (":60", ":60" + ",3:temperature:60" * 20_000, "is no link of a run"),
         ("frames=9", "frames=1000001", "is of more than 1000000 frames"),
+        ("&frames", "&predict=air_temperature:1,2,3,4&frames", "has a prediction that cannot be read: it needs a"),
+        ("&frames", "&predict=air_temperature:1,2,warm,4,5&frames", "has a prediction that cannot be read"),
+        ("&frames", "&predict=1,2,3,4,5&frames", "has a prediction that cannot be read"),
     ],
 )  # fmt: skip
 def test_a_link_that_cannot_be_run_is_refused_in_a_sentence_with_what_helps(part, wrong, sentence):
@@ -190,6 +193,11 @@ def changed(place, piece):
 pieces = st.text(max_size=9) | st.sampled_from(
     ["", "&", "%00", "%FF", "-1", "1e999", "9" * 400, "start", "seed", "a=b"]
 )
+
+
+def test_a_prediction_in_a_link_changes_nothing_of_the_run():
+    drawn = WHOLE.replace("&frames", "&predict=air_temperature:-70,20.5,1e-7,25,25&frames")
+    assert end_of(drawn, least=5) == end_of(WHOLE, least=5)
 
 
 @given(st.text() | st.builds(changed, st.integers(0, 34), pieces))
@@ -254,12 +262,94 @@ def test_a_page_opens_the_links_of_its_starts_and_refuses_others_in_a_sentence(l
         ("=", "=9.", f"This link is of atmosbox 9.{__version__}"),
         ("elastic-collisions", "mountains", "This link is for the scene mountains: open it in the page that"),
         ("seed=3", "seed=99", "This page has no box with the settings of the link: type atmosbox run --replay"),
+        ("&frames", "&predict=running_energy_heavy:1,2,3,4,5&frames", "The prediction of this link cannot be read"),
         ("&frames", "&turns=0:constructor:3&frames", "constructor = 3 cannot be turned in frame 0"),
     ):  # fmt: skip
         shown.page.goto(shown.page.url.partition("#")[0] + link.replace(part, wrong, 1))
         assert sentence in shown.note()
         shown.page.locator("#notes button").click()
     assert shown.digest() != first  # the box of the last link, without its turn
+
+
+def values_of(page):
+    """Return the values of the handles of a prediction, as a screen reader says them."""
+    return page.locator(".handle[role=slider]").evaluate_all("(all) => all.map((each) => each.ariaValueText)")
+
+
+def drag(page, handle, up):
+    """Drag a handle of a prediction up by some pixels."""
+    box = handle.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y - up, steps=4)
+    page.mouse.up()
+
+
+def test_a_prediction_is_drawn_by_hand_and_by_keyboard_and_goes_into_link_and_table(lab):
+    shown = lab("temperature", {"molecules": 50})
+    page, button = shown.page, shown.page.get_by_role("button", name="Draw your prediction")
+    button.click()
+    assert page.get_by_role("slider", name="time 0.25 ns").get_attribute("aria-valuetext") == "−10 °C"
+    assert page.get_by_role("button", name="Done").is_disabled()  # nothing was drawn
+    drag(page, page.locator(".handle").first, -60)
+    last = page.get_by_role("slider", name="time 1 ns")
+    last.press("PageUp")
+    last.press("ArrowUp")
+    last.press("ArrowLeft")
+    last.press("ArrowRight")
+    first, *others = values_of(page)
+    assert others == ["−10 °C", "−10 °C", "−10 °C", "12 °C"]  # steps of 2 degrees
+    low = float(first.removesuffix(" °C").replace("−", "-"))
+    assert low < -20.0
+    page.get_by_role("button", name="Done").click()
+    assert page.locator(".key", has_text="your prediction").count() == 1
+    shown.ask(type="frames", value=9)
+    shown.ask(type="reset", seed=7)  # it stays when the box begins again
+    shown.ask(type="frames", value=9)
+    link = link_of(shown)
+    assert f"&predict=air_temperature:{low:g},-10,-10,-10,12&frames=9&end" in link
+    replayed(link)
+    about, _ = shown.table()
+    place = about.index("# predicted: elapsed_time [ns], air_temperature [K]")
+    told = [tuple(map(float, line[2:].split(", "))) for line in about[place + 1 : place + 6]]
+    assert told == [(0.0, round(low + 273.15, 2)), (0.25, 263.15), (0.5, 263.15), (0.75, 263.15), (1.0, 285.15)]
+    shown.close()
+    again = lab("temperature", {"molecules": 50}, link)
+    assert again.page.locator(".key", has_text="your prediction").count() == 1
+    assert link_of(again).partition("&predict=")[2].startswith(f"air_temperature:{low:g},-10,-10,-10,12&")
+    again.page.select_option("#language", "de")  # which writes the page again
+    again.page.get_by_role("button", name="Neu zeichnen").click()
+    assert values_of(again.page) == [first, *others]
+    again.page.get_by_role("button", name="Abbrechen").click()
+    again.page.get_by_role("button", name="Vorhersage entfernen").click()
+    again.page.select_option("#language", "en")
+    assert again.page.locator(".key", has_text="your prediction").count() == 0
+    assert "predict" not in link_of(again)
+    again.close()
+    for wrong in (",12&", ",12,13&"), (",12&", ",,12&"), ("air_temperature:", "air_pressure:"):
+        refused = lab("temperature", {"molecules": 50}, link.replace(*wrong))
+        assert "The prediction of this link cannot be read" in refused.note()
+        refused.close()
+
+
+def test_results_are_hidden_until_the_prediction_is_drawn_if_the_address_says_so(lab):
+    shown = lab("lifting-dry", {"molecules": 100, "ascent": 40}, "?predict")
+    page = shown.page
+    shown.ask(type="frames", value=20)
+    results = [page.locator(name) for name in ("#gauges", ".sentences", ".atmosphere", ".histogram", ".key")]
+    shown.until(lambda: page.locator("#gauges button").count() > 0)
+    assert not any(each.is_visible() for found in results for each in found.all())
+    assert page.locator(".asked").inner_text().startswith("Predict: temperature")
+    curves = "document.querySelector('.asked').textContent"
+    assert "dry adiabat" not in page.evaluate(curves)
+    assert page.get_by_role("button", name="Cancel").count() == 0
+    place = page.locator(".handle").nth(2).bounding_box()
+    page.locator(".handle").nth(2).press("ArrowLeft")  # a profile: to the left is colder
+    assert page.locator(".handle").nth(2).bounding_box()["x"] < place["x"]
+    page.get_by_role("button", name="Done").click()
+    shown.until(lambda: all(each.is_visible() for each in page.locator("#gauges, .graph, .key").all()))
+    assert "dry adiabat" in page.locator(".key").all_inner_texts()[1]
 
 
 def test_a_page_inside_of_another_has_no_header_and_tells_its_height(lab, tmp_path):

@@ -51,6 +51,7 @@ def test_every_preset_of_every_scene_builds_a_box_that_differs_from_the_scenes_o
     assert seen > 20
 
 
+PREDICT = "[predict]\nask = 'x'\nwhy = 'y'\nchoices = ['a', 'b']\nright = 1\n"
 TASK = "[task]\nask = 'x'\nhint = 'y'\nframes = 1\nreach = {{{}}}"
 
 
@@ -62,6 +63,9 @@ def test_a_file_that_makes_no_sense_is_refused_in_a_sentence(tmp_path):
         (TASK.format("parcel_pressure = ['300 K', '1 hPa']"), "cannot be read"),
         (TASK.format("nonsense = ['300 K', '1 K']"), "nonsense of a task"),
         ("[predict]\nask = 'x'\nwhy = 'y'\nchoices = ['a', 'b']\nright = 3", "from 1 to 2"),
+        (PREDICT + "draw = {air_temperature = ['0 degC', '3 hPa']}", "air_temperature of a prediction cannot be read"),
+        (PREDICT + "draw = 3", "draw of predict must have a variable, and at most"),
+        (PREDICT + "drawn = 3", "predict 1 must have ask, choices, right, why, may have draw, and nothing else"),
         ("= 3", "is not TOML"),
     ]:
         module = tmp_path / "mine.py"

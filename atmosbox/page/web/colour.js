@@ -13,6 +13,7 @@ const LOOKS = {
     theory: ["#1a1a1a", "#5a5a5a", "#808080"],
     environment: ["#009e73", "#b4568f"],
     reference: ["#e69f00", "#56b4e9"],
+    prediction: ["#7a2fb0"],
     species: { "dry air": "#9ca8b6", water: "#1f86d6", molecule: "#8592a3", disc: "#8592a3", "light half": "#0072b2", "heavy half": "#d55e00", "gas from the left": "#0072b2", "gas from the right": "#e69f00" },
     background: "#f4f6f9", card: "#ffffff", edge: "#5d6b7c", metal: "#a9b4c0", liquid: "#2b8fdb", traced: "#d55e00",
     sky: "#a5cbe6", cloud: "#ffffff", ink: "#1a1f26", faint: "#5f6b79", grid: "#dfe4ea", cold: "#3f7fd0", warm: "#e0672a", mild: "#cfc4b2",
@@ -22,6 +23,7 @@ const LOOKS = {
     theory: ["#eceff3", "#b4bcc6", "#8d96a1"],
     environment: ["#33c79c", "#e39bc4"],
     reference: ["#e69f00", "#56b4e9"],
+    prediction: ["#c9a2f5"],
     species: { "dry air": "#aab5c2", water: "#4aaef5", molecule: "#aab5c2", disc: "#aab5c2", "light half": "#56aee8", "heavy half": "#f0843c", "gas from the left": "#56aee8", "gas from the right": "#f0b03c" },
     background: "#12161c", card: "#1a2028", edge: "#8492a3", metal: "#76828f", liquid: "#3fa2ee", traced: "#ff9a4d",
     sky: "#23415a", cloud: "#dfe6ee", ink: "#eef2f6", faint: "#9aa6b4", grid: "#2a323c", cold: "#4d8fe6", warm: "#f07a3a", mild: "#7d766b",
@@ -34,6 +36,7 @@ export const DASHES = {
   theory: [[6, 3], [1.5, 2.5], [10, 3, 2, 3]],
   environment: [[8, 3, 2, 3], [2, 3]],
   reference: [[]],
+  prediction: [[12, 5]],
 };
 
 const COLDEST = 233, WARMEST = 333; // temperatures at which walls have their full colour [K]

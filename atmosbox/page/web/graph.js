@@ -8,7 +8,7 @@ import { drawSkewt, slanted } from "./skewt.js";
 import { explained } from "./notes.js";
 import { numbers, phrase, word } from "./words.js";
 
-const ORDER = { reference: 0, environment: 1, data: 2, theory: 3 };
+const ORDER = { reference: 0, environment: 1, data: 2, theory: 3, prediction: 4 };
 const font = (size) => `${size}px system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif`;
 
 export class Graph {

@@ -13,6 +13,8 @@ const letter = (run) => String.fromCharCode(65 + run);
 const subject = (panel) => JSON.stringify([panel.kind, panel.lines.map(({ x, y, role }) => [x.name, y.name, role])]);
 
 export class Graphs {
+  drawn = (graph, curves) => curves; // what a graph draws, which a prediction changes
+
   // `runs`: the stage, the film and the numbers of each run.
   constructor(parent, runs, seek) {
     Object.assign(this, { parent, runs, whole: Boolean(seek) });
@@ -33,6 +35,7 @@ export class Graphs {
     const rows = this.panels.reduce((sum, { panel }) => sum + (panel.kind === "skewt" || panel.kind === "atmosphere" ? 2 : 1), 0);
     const told = runs.every(({ stage }) => !stage.speed.counted) && (this.whole || rows < 4);
     this.speeds = told ? new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length }) : null;
+    this.speeds?.element.classList.add("speeds");
     parent.dataset.count = this.panels.length + (told ? 1 : 0);
     this.refresh();
     this.highest = 0;
@@ -47,7 +50,7 @@ export class Graphs {
   // Draw the curves again, because new values may have come.
   refresh() {
     for (const { graph, members } of this.panels) {
-      graph.set(members.flatMap(({ run, panel }) => curvesOf(panel, this.runs[run].numbers).map((curve) => ({ ...curve, run }))));
+      graph.set(this.drawn(graph, members.flatMap(({ run, panel }) => curvesOf(panel, this.runs[run].numbers).map((curve) => ({ ...curve, run })))));
     }
   }
 

@@ -14,6 +14,7 @@ import { Lesson } from "./lesson.js";
 import { Link, embed } from "./link.js";
 import { note } from "./notes.js";
 import { Player } from "./player.js";
+import { Prediction } from "./prediction.js";
 import { Sheet } from "./sheet.js";
 import { Stage } from "./stage.js";
 import { language, languages, phrase, speak, spell, story } from "./words.js";
@@ -31,6 +32,7 @@ class Lab {
     this.player = new Player(find("transport"), find("files"), say, tell);
     this.link = new Link(say);
     this.lesson = new Lesson(find("lesson"), find("tries"), say);
+    this.prediction = new Prediction(say);
     this.gauges = new Gauges(find("gauges"), find("voice"), tell);
     this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }), tell);
     this.#languages();
@@ -70,7 +72,7 @@ class Lab {
   }
 
   // A new box begins: remove all that was shown of the previous one.
-  open({ stage: record, controls, state, lesson, settle }) {
+  open({ stage: record, controls, state, lesson, settle, prediction }) {
     if (!this.numbers || state.time === 0) this.since = 0;
     this.settle = settle;
     this.stage?.leave();
@@ -89,6 +91,7 @@ class Lab {
     find("story").textContent = story(record.story);
     find("panel").hidden = !controls?.length && !lesson?.presets.length;
     this.lesson.offer(record.scene, lesson);
+    this.prediction.offer(this.graphs, lesson, prediction);
     const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
       record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
     this.caption = showCaption(find("caption"), [{ stage: record, footer }]);
@@ -103,7 +106,7 @@ class Lab {
   start({ playing, time }) {
     if (this.started) return;
     this.started = true;
-    if (!playing && time === 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.engine.say({ type: "play" });
+    if (!playing && time === 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.prediction.play();
   }
 
   // Show the state of the box, which comes at least twice a second.
@@ -185,7 +188,7 @@ export function begin() {
     d: () => lab.sheet?.turnTheme(),
     r: () => player.reset(),
     u: () => lab.lesson.undo(),
-    m: () => lab.gauges.say(withUnit(lab.film?.end, player.unit, 4)),
+    m: () => lab.prediction.draft || lab.gauges.say(withUnit(lab.film?.end, player.unit, 4)),
     "?": () => lab.sheet?.help(),
   });
   setInterval(() => lab.look(), LOOK);

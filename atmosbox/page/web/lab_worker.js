@@ -13,7 +13,7 @@ const STEP = 0.04; // real time that one step shows [s]
 const SLOWEST = 0.25, FASTEST = 16;
 const [DONE, BUSY] = [0, 1];
 const MOST_TURNS = 5000, LONGEST = 1_000_000; // turns of knobs, and frames, that a link can hold
-const LINK = /^#(atmosbox=([\w.+-]+)&scene=([\w.%~-]+)([\w.%~&=-]*))&seed=(\d{1,16})(?:&turns=([\w:,.+-]+))?&frames=(\d{1,7})&end$/;
+const LINK = /^#(atmosbox=([\w.+-]+)&scene=([\w.%~-]+)([\w.%~&=-]*))&seed=(\d{1,16})(?:&turns=([\w:,.+-]+))?(?:&predict=(\w+):([\d.,e+-]+))?&frames=(\d{1,7})&end$/;
 const TURN = /^(\d{1,7}):(\w+):(start|-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)$/;
 const WHY = { 2: "events pile up without end", 3: "more molecules have come together than its cells have room for",
   4: "the piston would crush the molecules", 5: "a molecule that evaporates finds no free place" };
@@ -27,7 +27,7 @@ const refuse = (text) => say({ type: "note", level: "error", text });
 class Box {
   // `served` says whether Python serves the page, and makes plans of other boxes.
   constructor(starts, machine, served) {
-    Object.assign(this, { starts, served, start: starts.first, past: [], playing: false, pace: 1, watched: true, pending: new Map(), seed: machine.plan.seed });
+    Object.assign(this, { starts, served, start: starts.first, past: [], playing: false, pace: 1, watched: true, prediction: null, pending: new Map(), seed: machine.plan.seed });
     this.take(machine);
     this.begin();
     this.greet();
@@ -42,6 +42,7 @@ class Box {
   // ---------------------------------------------------------------- a box
 
   take(machine) {
+    if (JSON.stringify(machine.plan.told.lesson.predict?.draw) !== JSON.stringify(this.told?.lesson.predict?.draw)) this.prediction = null;
     Object.assign(this, { machine, plan: machine.plan, told: machine.plan.told });
     if (!this.plan.seeded || this.served) this.seed = this.plan.seed;
   }
@@ -66,7 +67,7 @@ class Box {
   greet() {
     const { stage } = this.told, { seed } = this;
     const settings = stage.settings.map(([name, text]) => [name, name === "seed" ? String(seed) : text]);
-    say({ type: "stage", ...this.told, stage: { ...stage, seed, settings }, controls: this.controls(), state: this.state() });
+    say({ type: "stage", ...this.told, stage: { ...stage, seed, settings }, controls: this.controls(), state: this.state(), prediction: this.prediction });
     this.look();
     say(this.state());
   }
@@ -262,6 +263,7 @@ class Box {
     else if (type === "pace") this.pace = Math.min(Math.max(Number(value) || 1, SLOWEST), FASTEST);
     else if (type === "set") this.turn(name, value);
     else if (type === "undo") await this.undo();
+    else if (type === "predict") this.prediction = message.values;
     else if (type === "save") this.save();
     else if (type === "link") say({ type, link: this.link() });
     else if (type === "greet") { // the page was cleared, and asks for all that it showed
@@ -451,18 +453,23 @@ class Box {
     const turned = [...this.turned, ...due, ...Array.from(pending, ([name, value]) => ({ frame: next, name, value }))];
     if (turned.length > MOST_TURNS || this.frame > LONGEST) return null;
     const turns = turned.map(({ frame, name, value }) => `${frame}:${name}:${value ?? "start"}`).join();
-    return `#${this.plan.link}&seed=${this.seed}${turns && "&turns="}${turns}&frames=${this.frame}&end`;
+    const drawn = this.prediction ? `&predict=${this.told.lesson.predict.draw.measured.name}:${this.prediction}` : "";
+    return `#${this.plan.link}&seed=${this.seed}${turns && "&turns="}${turns}${drawn}&frames=${this.frame}&end`;
   }
 
   // Begin the run of a link, whose knobs turn by themselves.
   async open(link) {
-    const [all, own, version, scene, settings, seed, turns, frames] = (link.length < 200_000 && LINK.exec(link)) || [];
+    const [all, own, version, scene, settings, seed, turns, drawn, points, frames] = (link.length < 200_000 && LINK.exec(link)) || [];
+    const prediction = points?.split(",").map((each) => (each ? Number(each) : NaN)) ?? null, wanted = this.told.lesson.predict?.draw;
+    const unread = prediction && (prediction.length !== wanted?.along.places.length || !prediction.every(Number.isFinite) || drawn !== wanted.measured.name);
     const mine = this.plan.link.split("&"), coming = (turns?.split(",") ?? []).map((each) => TURN.exec(each));
     if (!all || coming.includes(null) || Number(frames) > LONGEST || coming.length > MOST_TURNS || !Number.isSafeInteger(Number(seed))) {
       refuse("This link is damaged: copy it again, as a whole.");
     } else if (mine[0] !== `atmosbox=${version}`) refuse(`This link is of atmosbox ${version}: open it in a page of that version, for another gives other numbers.`);
     else if (mine[1] !== `scene=${scene}`) refuse(`This link is for the scene ${scene}: open it in the page that atmosbox lab ${scene} writes.`);
+    else if (unread) refuse("The prediction of this link cannot be read: copy the link again, as a whole.");
     else if (await this.found(own, Number(seed), settings)) {
+      this.prediction = this.told.lesson.predict?.draw ? prediction : null;
       this.again();
       const wrong = coming.find(([, frame, name, value], place) => !Object.hasOwn(this.plan.knobs, name) || frame - (coming[place - 1]?.[1] ?? 0) < 0
         || !(value === "start" || (value >= this.control(name).low && value <= this.control(name).high)));
@@ -501,6 +508,11 @@ class Box {
     const about = [`# ${command}`, ...turned.length ? ["# begins like this run; then these changes by hand", ...turned] : [`# ${repeats}`],
       link ? `# atmosbox run --replay "${link}"\n# repeats all ${this.frame} frames` : "# this run has become too long for a link"];
     if (every > 1) about.push(`# every ${every}th frame`);
+    if (this.prediction) {
+      const { along, measured } = this.told.lesson.predict.draw, own = (value, { factor, offset }) => brief((value - offset) / factor);
+      about.push(`# predicted: ${along.name} [${along.unit}], ${measured.name} [${measured.unit}]`,
+        ...this.prediction.map((value, place) => `# ${own(along.places[place], along)}, ${own(value, measured)}`));
+    }
     const lines = [...about, `# units: ${names.map((name) => `${name} [${units[name]}]`).join(", ")}`, names.join(","),
       ...rows.map((row) => names.map((name) => row[name]).join(","))];
     say({ type: "file", name: `${this.told.stage.scene}-lab.csv`, text: `${lines.join("\n")}\n` });
