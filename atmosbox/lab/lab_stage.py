@@ -179,7 +179,7 @@ def _points(panel: Mapping[str, Any], way: Mapping[str, Array]) -> dict[str, lis
     """Return the points of a planned ascent that the axes of a panel must include, in the units of the panel."""
     points: dict[str, list[float]] = {"x": [], "y": []}
     for line in panel["lines"]:
-        if "minus" in line or not {line["x"]["name"], line["y"]["name"]} <= set(way):
+        if not {line["x"]["name"], line["y"]["name"]} <= set(way):
             continue
         for axis in ("x", "y"):
             values = way[line[axis]["name"]] * line[axis]["factor"] + line[axis]["offset"]

@@ -71,11 +71,6 @@ function curveOf(panel, line, numbers) {
   if (!across?.length || !up?.length) return null;
   const count = Math.max(across.length, up.length);
   let x = along(shown(across, line.x), count), y = along(shown(up, line.y), count);
-  if (line.minus) {
-    const base = along(shown(numbers.get(line.minus.name) ?? [], line.minus), count);
-    if (panel.across) x = x.map((value, place) => value - base[place]);
-    else y = y.map((value, place) => value - base[place]);
-  }
   const spread = line.error && numbers.get(line.error.name);
   if (line.worst && spread?.some(Number.isFinite)) { // a temperature that is hardly known is not drawn
     const values = panel.across ? across : up, draw = panel.across ? x : y;
