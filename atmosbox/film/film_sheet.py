@@ -107,7 +107,6 @@ class Sheet:
             bar, bottom = 3.4 * look.text / high, bottom / high  # height of the colour bar with its numbers and label
             foot = bottom + bar + 1.4 * look.text / high
             self.stage.axes.set_position((left, foot, width, 1.0 - top / high - foot))
-            self.stage.fit()
             spot = (left + (1.0 - _BAR) * width / 2, bottom + 0.75 * bar, _BAR * width, 0.2 * bar)
             counted = held is not None and held.neighbours is not None
             colour_bar(self.figure.add_axes(spot), self.stage.norm, look, counted=counted, upright=False)

@@ -93,7 +93,7 @@ class BoxPicture:
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        The axes; after a change of their position, `fit` must be called.
+        The axes.
     held : Molecules
         The molecules of the run.
 
@@ -127,7 +127,7 @@ class BoxPicture:
         if held.neighbours is None:
             speed = held.speed[:, self.shown]
             self.norm = colour_scale(speed[np.isfinite(speed)].astype(np.float64))
-        self.fit()
+        axes.set_axis_off()
         if "piston" in held.walls:  # upright edges of the largest box, up to which the piston may rise
             ends = project(corners(self.largest), self.largest)[0]
             upright = [ends[[low, low + 1]] for low in (0, 2, 4, 6)]
@@ -144,14 +144,13 @@ class BoxPicture:
             artist.set_zorder(1.0 + order / 10.0)
             axes.add_artist(artist)
 
-    def fit(self) -> None:
+    def _fit(self) -> None:
         """Set the limits so that the largest box fills the axes, with one scale for both directions."""
         seen, _ = project(corners(self.largest), self.largest)
         low, high, frame = seen.min(axis=0), seen.max(axis=0), self.axes.get_window_extent()
         pixel = 1.02 * max((high[0] - low[0]) / frame.width, (high[1] - low[1]) / frame.height)  # [unit]
         (x, y), width, height = (low + high) / 2, pixel * frame.width, pixel * frame.height
         self.axes.set(xlim=(x - width / 2, x + width / 2), ylim=(y - height / 2, y + height / 2))
-        self.axes.set_axis_off()
         self.points = 72.0 / self.axes.figure.dpi / pixel  # size of a unit of length in the middle of the box [pt]
 
     def _write_sides(self) -> None:
@@ -168,6 +167,7 @@ class BoxPicture:
 
     def show(self, frame: int) -> None:
         """Draw a frame: walls and edges, molecules and drops, the most distant first."""
+        self._fit()
         held, look, walls = self.held, self.look, self.held.walls
         seen, _ = project(corners(held.side[frame] / self.metre), self.largest)
         self.back.set_verts([seen[_FACES[wall]] for wall in _BEHIND])

@@ -79,12 +79,10 @@ def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
             for name, label in zip(_DENSE, ("liquid", "vapour"), strict=True)
         ]
         lines.append(Line("mean", "kelvin", "mean of both"))
-        note = ""
         if fluid is not None:
             flat = flat.assign(_critical(data, fluid.critical_temperature * strength))
-            note = _TOO_HIGH if "meeting" in flat else ""
             lines.append(Line("width", "critical", "critical temperature", "theory"))
-        title = "Liquid and vapour become alike"
+        title, note = "Liquid and vapour become alike", _TOO_HIGH if "meeting" in flat else ""
         panels.append(Panel("profile", title, tuple(lines), "density", "temperature", note=note))
     headlines = json.dumps(["steepness", "meeting"])
     return flat.assign_attrs(data.attrs, atmosbox_panels=to_json(panels), atmosbox_headlines=headlines)

@@ -86,9 +86,6 @@ class DiscPicture:
         axes.set(xlim=(0.0, self.box[0]), ylim=(0.0, self.box[1]))
         axes.spines[:].set(visible=True, linewidth=look.line * 1.2, color=DARK)
 
-    def fit(self) -> None:
-        """Do nothing: the axes have equal scales already."""
-
     def show(self, frame: int) -> None:
         """Draw a frame: the discs, and their paths in the frames before, fainter for older ones."""
         self.discs.set_offsets(self.place[frame])

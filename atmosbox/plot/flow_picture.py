@@ -17,8 +17,6 @@ from atmosbox.plot.theme import DARK, Theme
 from atmosbox.plot.units import convert, spelled
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
-__all__ = ["flow_height", "instants", "put_flow"]
-
 _COLOURS = "inferno"  # dark is cold, light is warm, in print too
 _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
 _BAR = 0.125  # width of the colour bar with its numbers, in widths of the page

@@ -15,8 +15,6 @@ from atmosbox.plot.caption import stated
 from atmosbox.scene.conversion import from_si, phrase
 from atmosbox.scene.settings import Parameter
 
-__all__ = ["Change", "Compared", "Measured", "Naming", "compared", "naming"]
-
 _MADE_BY = ("engine", "version")
 _NOT_SAID = "-"
 _MOST_SAID = 2  # greatest number of changes in a label; if there are more, runs are labelled by their files

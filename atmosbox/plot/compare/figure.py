@@ -28,8 +28,6 @@ from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find
 from atmosbox.plot.units import spelled
 from atmosbox.scene.panels import ROLES, Line, Panel
 
-__all__ = ["MOST", "drawn", "figure", "save", "shared_panels", "spoken"]
-
 MOST = len(DATA_COLOURS)
 """Greatest number of runs in one figure."""
 
