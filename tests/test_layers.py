@@ -37,8 +37,8 @@ LAYERS = {
     "film": Layer("errors theory file scene plot", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
     "sheet": Layer(
         "version errors file scenarios scene simulation",
-        "numpy jinja2 markdown_it uncertainties",
-        lazily="reportlab matplotlib",
+        "numpy jinja2 markdown_it reportlab uncertainties",
+        lazily="matplotlib",
     ),
     "sweep": Layer(
         "version callable_room errors file scenarios scene simulation", "numpy xarray", lazily="distributed"

@@ -6,16 +6,16 @@ from atmosbox.scene.panels import Line, Panel, from_json, to_json
 
 AIR = Line("elapsed_time", "air_temperature", "air", error="air_temperature_se")
 WALL = Line("elapsed_time", "wall_temperature[z_low]", "wall", "theory")
-MISFIT = Line("parcel_temperature", "parcel_pressure", "parcel", minus="adiabat_temperature")
+PARCEL = Line("parcel_temperature", "parcel_pressure", "parcel")
 
 FIGURE = (
     Panel("line", "Temperature", (AIR, WALL), "time", "temperature", "ns", "degC", headlines=("mean",)),
-    Panel("profile", "Misfit − in K", (MISFIT,), y_unit="hPa", y_scale="log", y_invert=True, note="A note."),
+    Panel("profile", "Air − in K", (PARCEL,), y_unit="hPa", y_scale="log", y_invert=True, note="A note."),
     Panel("histogram", "Speeds", (Line("speed", "speed_probability_density", "measured"),), x_invert=True),
     Panel("discs", "The box", x_unit="nm"),
     Panel("line", "Long noise", (WALL,), x_scale="log", averages=30),
     Panel(
-        "profile", "Half", (MISFIT,), start=(15.0, 0.0), guides=(("y", 5.4, "half"),), y_limits=(0.0, 9.0), areas=True
+        "profile", "Half", (PARCEL,), start=(15.0, 0.0), guides=(("y", 5.4, "half"),), y_limits=(0.0, 9.0), areas=True
     ),
 )
 
@@ -31,7 +31,6 @@ def test_a_panel_that_cannot_be_drawn_is_refused_where_it_is_written():
         (lambda: Line("x", 3, "a curve"), "the y of a line is 3"),
         (lambda: Line("x", "y", "a curve", "measured"), "one of data, theory, environment, reference"),
         (lambda: Line("x", "y", "a curve", error=""), "the error of a line"),
-        (lambda: Line("x", "y", "a curve", minus=1), "the minus of a line"),
         (lambda: Panel("pie", "A panel", (AIR,)), "one of line, profile, histogram, discs"),
         (lambda: Panel("line", "", (AIR,)), "the title of a panel"),
         (lambda: Panel("line", "A panel"), "needs at least one line"),
@@ -43,6 +42,8 @@ def test_a_panel_that_cannot_be_drawn_is_refused_where_it_is_written():
         (lambda: Panel("line", "A panel", (AIR,), x_label=None), "x_label of the panel 'A panel' is no text"),
         (lambda: Panel("line", "A panel", (AIR,), y_scale="cubic"), "one of linear, log"),
         (lambda: Panel("line", "A panel", (AIR,), y_invert=1), "neither true nor false"),
+        (lambda: Panel("line", "A panel", (AIR,), averages=True), "averages of the panel"),
+        (lambda: Panel("profile", "A panel", (AIR,), averages=10), "averages of the panel"),
     ]
     for make, words in cases:
         with pytest.raises(ValueError, match=words):
@@ -77,9 +78,3 @@ def test_foreign_or_old_text_is_refused_in_a_sentence():
         with pytest.raises(ValueError, match=words) as refusal:
             from_json(text)
         assert str(refusal.value).endswith(".")
-
-
-def test_only_a_line_panel_is_averaged_over_a_whole_number_of_parts():
-    for kind, averages in [("line", -1), ("line", 2.5), ("line", True), ("profile", 10)]:
-        with pytest.raises(ValueError, match="averages of the panel 'Noise'"):
-            Panel(kind, "Noise", (AIR,), averages=averages)

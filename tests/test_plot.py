@@ -14,14 +14,13 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-from matplotlib.colors import to_rgb
+from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.container import ErrorbarContainer
 from matplotlib.patches import StepPatch
 
 from atmosbox import plot, scenarios
-from atmosbox.errors import FileError, SettingError
-from atmosbox.plot import caption, units
+from atmosbox.errors import FileError
+from atmosbox.plot import caption
 from atmosbox.plot.curve import curve
 from atmosbox.plot.run_figure import panels_of
 from atmosbox.scene.panels import Line, Panel, to_json
@@ -79,11 +78,6 @@ def small(values, panel=TEMPERATURE, **variables):
     }
     coords = {"elapsed_time": variable("elapsed_time", np.arange(values.size, dtype=float), "ns")}
     return finished("temperature", "A box", 10, [panel], held | variables, coords)
-
-
-def alone(run, panel=0):
-    """Return a run with one of its panels."""
-    return run.assign_attrs(atmosbox_panels=to_json([panels_of(run)[panel]]))
 
 
 def tick_texts(axis):
@@ -167,15 +161,6 @@ def test_discs_are_true_to_size_in_their_box_coloured_by_speed_and_their_trails_
         assert np.min(np.linalg.norm(place - segment[-1], axis=1)) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_theory_is_dashed_and_dark_and_data_solid_with_a_band(drawings):
-    axes = drawings["temperature", "notes"].axes[0]
-    data, theory = axes.lines[:2]
-    assert (data.is_dashed(), theory.is_dashed()) == (False, True)
-    assert max(to_rgb(theory.get_color())) < 0.2
-    band = next(artist for artist in axes.collections if isinstance(artist, PolyCollection))
-    assert to_rgb(band.get_facecolor()[0][:3]) == pytest.approx(to_rgb(data.get_color()))
-
-
 def test_every_axis_has_a_label_with_its_unit_and_two_numbers_or_more(drawings):
     for axes in (axes for drawing in drawings.values() for axes in drawing.axes):
         for axis in (axes.xaxis, axes.yaxis):
@@ -184,18 +169,6 @@ def test_every_axis_has_a_label_with_its_unit_and_two_numbers_or_more(drawings):
                 assert len(tick_texts(axis)) >= 2
             else:
                 assert axis is axes.xaxis, "only an axis of time has its label below the panel beneath"
-
-
-def test_pressure_falls_upward_on_a_logarithmic_axis_with_plain_numbers(runs):
-    air = Line("parcel_temperature", "parcel_pressure", "air")
-    panel = Panel("profile", "Air", (air,), x_unit="degC", y_unit="hPa", y_scale="log", y_invert=True)
-    drawing = plot.figure(runs["lifting-dry"].assign_attrs(atmosbox_panels=to_json([panel])))
-    drawing.draw_without_rendering()
-    (axes,) = drawing.axes
-    assert axes.get_yscale() == "log"
-    low, high = axes.get_ylim()
-    assert low > 1000.0 > 300.0 > high
-    assert {"1000", "850", "700", "500"} <= {text.get_text() for text in tick_texts(axes.yaxis)}
 
 
 def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so():
@@ -237,24 +210,6 @@ def test_a_headline_is_called_by_its_long_name_and_shown_in_its_units(runs):
     run = xr.Dataset(headline("h", 8400.0, 31.0, 8430.0, "m", "", long_name="scale height", display_units="km"))
     said = [words.replace("\u00a0", " ") for words in caption.headline(run, "h")]
     assert said == ["scale height", "8.40", "± 0.03 km", "theory 8.43 km", "difference −0.03 km"]
-
-
-def test_what_was_not_measured_is_not_said():
-    run = small([280.0, 290.0], **headline("mean", np.nan, np.nan, 280.0, "K", "mean"))
-    assert caption.headline(run, "mean") is None
-    assert caption.headline(run, "nowhere") is None
-
-
-def test_numbers_have_the_digits_that_their_error_allows():
-    assert caption.number(1234.5678, 0.234) == "1234.6 ± 0.2"
-    assert caption.number(0.0, 0.0) == "0"
-    assert caption.number(-1.5e-9, 3e-10, signed=True) == "(−1.5 ± 0.3) × 10⁻⁹"
-
-
-def test_a_difference_of_temperatures_in_celsius_is_in_kelvin():
-    assert units.of_difference("degC") == "K"
-    assert float(units.convert(5.0, "K", "degC", difference=True)) == 5.0
-    assert float(units.convert(5.0, "ns", "ps")) == pytest.approx(5000.0)
 
 
 MINE = {"font.size": 30.0, "lines.linewidth": 9.0, "svg.hashsalt": "x", "savefig.dpi": 50, "axes.facecolor": "yellow"}
@@ -305,16 +260,6 @@ def test_each_format_is_what_it_says_and_carries_the_settings_of_its_run(tmp_pat
     assert pdf.read_bytes().startswith(b"%PDF")
     assert b"/CIDFontType2" in pdf.read_bytes()  # TrueType, whose text can be searched
     assert b"CreationDate" not in pdf.read_bytes()
-
-
-def test_an_unknown_format_is_refused_with_those_that_are_known(tmp_path):
-    for name, format, words in [
-        ("figure.gif", None, "format = gif is unknown: give a file name or format of png, svg or pdf"),
-        ("figure", None, "format is not given: give a file name or format of png, svg or pdf"),
-        ("figure.png", "pdf", "format = pdf does not go with the file name figure.png"),
-    ]:
-        with pytest.raises(SettingError, match=words):
-            plot.save(small([280.0]), tmp_path / name, format)
 
 
 def broken(**changes):

@@ -183,17 +183,6 @@ def test_the_latent_heat_in_the_answers_of_evaporation_is_that_of_theory(tempera
     assert float(carried) == pytest.approx(mean * 1e21, abs=0.6)
 
 
-def test_the_latent_heat_that_condensation_names_gives_the_growth_of_the_vapour_pressure():
-    first = runner.prepare("condensation", {})
-    text = filled(
-        read(text_of(first.module))["differ"][1]["answer"].partition("To leave")[2], {"A": Trial("A", "", first)}
-    )
-    (latent,) = re.findall(r"= (\d+) k T", text)
-    cold, warm = 293.15, 303.15
-    grown = theory.saturation_vapor_pressure(warm) / theory.saturation_vapor_pressure(cold)
-    assert np.exp(float(latent) * (1.0 - cold / warm)) == pytest.approx(grown, rel=0.01)
-
-
 @pytest.fixture(scope="module")
 def answered():
     return sheets.worksheet("elastic-collisions", {"seed": 3}, answers=True)
@@ -329,16 +318,6 @@ def test_a_screen_reader_finds_headings_headers_names_and_descriptions_in_the_pa
     pictures = [attributes for tag, attributes in tags if tag in ("svg", "img")]
     assert all('role="img" aria-label="Empty axes' in attributes for attributes in pictures)
     assert "____" not in page
-
-
-def test_ctrl_c_writes_nothing(tmp_path, monkeypatch):
-    def stopped(*_, **__):
-        raise runner.Interrupted(None)
-
-    monkeypatch.setattr(runner, "execute", stopped)
-    words = ["sheet", "elastic-collisions", "--answers", "--out", str(tmp_path / "a.pdf")]
-    assert CliRunner().invoke(app, words).exit_code == 130
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("scene", ["attraction", "elastic-collisions", "lifting-dry"])

@@ -112,8 +112,7 @@ def _still(prepared: Prepared) -> str:
     with style(look):
         figure = Figure(_SIZE, dpi=120)
         picture = box_picture(figure.add_axes((0.04, 0.04, 0.92, 0.92)), run, molecules(run), look)
-        picture.fit()
-        picture.artists(recording.frames - 1)
+        picture.show(recording.frames - 1)
         content = io.BytesIO()
         figure.savefig(content, format="png", metadata={"Software": None})
     return base64.b64encode(content.getvalue()).decode("ascii")

@@ -31,19 +31,9 @@ _SIZES = {"gif": {"notes": (800, 450), "slides": (960, 540)}, "mp4": {"notes": (
 _WIDE = {"notes": 7.2, "slides": 40.0 / 3.0}  # inch
 _SMOOTH = 0.1  # if molecules move less than this from frame to frame, in sides of the box, their motion looks smooth
 _MP4 = [
-    "-f",
-    "mp4",
-    "-crf",
-    "20",
-    "-preset",
-    "medium",
-    "-movflags",
-    "+faststart",
-    "-fflags",
-    "+bitexact",
-    "-flags:v",
-    "+bitexact",
-]
+    "-f", "mp4", "-crf", "20", "-preset", "medium", "-movflags", "+faststart", "-fflags", "+bitexact",
+    "-flags:v", "+bitexact",
+]  # fmt: skip
 """Options of ffmpeg: quality (18 looks like the original), playing while it loads, the same bytes each time."""
 
 

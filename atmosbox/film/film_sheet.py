@@ -6,18 +6,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError, Option
 from atmosbox.file.molecules import Molecules
-from atmosbox.film.graph import Graph, GraphPainter, chosen
+from atmosbox.film.graph import Graph, chosen, drawer
 from atmosbox.film.running import Running
-from atmosbox.plot.box_picture import box_picture, instant, speed_bar
+from atmosbox.plot.box_picture import box_picture, instant
 from atmosbox.plot.caption import footer
-from atmosbox.plot.layout import TextMeasure, blank, put_panels, settle
+from atmosbox.plot.discs import colour_bar
+from atmosbox.plot.layout import TextMeasure, blank, put_footer, put_heading, put_panels, settle
 from atmosbox.plot.run_figure import explanation, panels_of
-from atmosbox.plot.theme import FAINT, Theme
+from atmosbox.plot.theme import Theme
 from atmosbox.plot.units import convert, spelled
 from atmosbox.scene.conversion import to_si
 
@@ -85,50 +85,36 @@ class Sheet:
         self.figure = blank(look.wide, look)
         measure = TextMeasure(self.figure)
         wide, high = (72.0 * float(size) for size in self.figure.get_size_inches())  # pt
-        left = look.text / 2 / wide
         self.stage = None if held is None else box_picture(self.figure.add_axes((0, 0, 1, 1)), dataset, held, look)
-
-        # The footer below all, which tells a viewer how far molecules fly between two pictures if that is far.
+        # The footer below all tells a viewer how far molecules fly between two pictures if that is far.
         words = [footer(dataset), *([] if self.stage is None else self.stage.legend())]
         words += self._jumps(held, np.arange(dataset.sizes["elapsed_time"]) if frames is None else frames)
-        small = measure.wrap(" · ".join(words) + explanation(dataset, panels), 0.98 * (wide - look.text), look.small)
-        below = self.figure.text(
-            left, 0.4 * look.text / high, small, fontsize=look.small, color=FAINT, va="bottom", linespacing=1.15
-        )
-        bottom = (measure.height(below) + 0.8 * look.text) / high
-
-        # The title, and below it the clock.
-        title, size = str(dataset.attrs.get("title", "")), 1.25 * look.title
-        title = measure.wrap(title, (share or 1.0) * wide - look.text, size, "bold")
-        over = self.figure.text(left, 1.0 - 0.5 * look.text / high, title, fontsize=size, weight="bold", va="top")
-        top = 1.0 - (measure.height(over) + 0.95 * look.text) / high
-        self.clock = self.figure.text(left, top, self._time(0), fontsize=look.title, va="top")
-        top -= (1.3 * look.title * len(self._time(0).splitlines()) + 0.4 * look.text) / high
-        for text in (below, over, self.clock):
-            text.set_in_layout(False)
+        bottom = put_footer(measure, " · ".join(words) + explanation(dataset, panels), look)
+        top = put_heading(measure, str(dataset.attrs.get("title", "")), 1.25 * look.title, look, share or 1.0)
+        self.clock = measure.write(self._time(0), look.text / 2, top, fontsize=look.title, va="top")
+        top += 1.3 * look.title * len(self._time(0).splitlines()) + 0.4 * look.text
 
         self.graphs: list[Graph] = []
-        engine = self.figure.get_layout_engine()
-        if panels and isinstance(engine, ConstrainedLayoutEngine):
-            engine.set(rect=(share, bottom, 1.0 - share, (1.0 if share else top) - bottom))
-            draw = GraphPainter(dataset, look, running).draw
-            graphs = put_panels(self.figure, panels, look, dataset, draw)
+        if panels:
+            engine: Any = self.figure.get_layout_engine()
+            engine.set(rect=(share, 0.0, 1.0 - share, 1.0 if share else 1.0 - top / high))
+            graphs = put_panels(self.figure, panels, look, dataset, drawer(dataset, look))
             settle(measure, graphs, replace(look, grows=False))
             self.graphs = [Graph(graph.axes, graph.panel, dataset, look, running) for graph in graphs]
         self.figure.set_layout_engine("none")
         if self.stage is not None:  # place the box, and below it the colour bar
-            left, width = 2 * left, share - 1.6 * look.text / wide
-            bar = 3.4 * look.text / high  # height of the colour bar with its numbers and its label
+            left, width = look.text / wide, share - 1.6 * look.text / wide
+            bar, bottom = 3.4 * look.text / high, bottom / high  # height of the colour bar with its numbers and label
             foot = bottom + bar + 1.4 * look.text / high
-            self.stage.axes.set_position((left, foot, width, top - foot))
-            self.stage.fit()
+            self.stage.axes.set_position((left, foot, width, 1.0 - top / high - foot))
             spot = (left + (1.0 - _BAR) * width / 2, bottom + 0.75 * bar, _BAR * width, 0.2 * bar)
-            speed_bar(self.figure, self.stage, spot, look)
+            counted = held is not None and held.neighbours is not None
+            colour_bar(self.figure.add_axes(spot), self.stage.norm, look, counted=counted, upright=False)
 
     def picture(self, frame: int) -> NDArray[np.uint8]:
         """Return the picture of a frame, (height, width, 3)."""
         if self.stage is not None:
-            self.stage.artists(frame)
+            self.stage.show(frame)
         for graph in self.graphs:
             graph.show(frame)
         self.clock.set_text(self._time(frame))

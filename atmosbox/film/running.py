@@ -50,18 +50,6 @@ class Running:
             names += [name for name in _LAYERED if name in dataset.variables]
             self._sum_layers()
         self.names = tuple(names)
-        along = {str(each) for name in names for each in dataset[name].dims}
-        self.still = (
-            dataset[
-                [
-                    name
-                    for name in dataset.variables
-                    if along & set(dataset[name].dims) and "molecule" not in dataset[name].dims
-                ]
-            ]
-            if names
-            else dataset
-        )
 
     def _sum_layers(self) -> None:
         """Sum the molecules and the squares of their speeds in every layer, up to every frame."""
@@ -80,10 +68,8 @@ class Running:
 
     def at(self, frame: int) -> xr.Dataset:
         """Return the dataset with the averages up to a frame in place of those of the whole run."""
-        found = {name: self.values(name, frame) for name in self.names}
-        return self.still.assign(
-            {name: (self.still[name].dims, held, self.still[name].attrs) for name, held in found.items()}
-        )
+        held = self.dataset
+        return held.assign({name: held[name].copy(data=self.values(name, frame)) for name in self.names})
 
     def values(self, name: str, frame: int) -> Floats:
         """Return one average up to a frame, in the unit of the file; NaN in layers with too few molecules."""

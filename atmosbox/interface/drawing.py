@@ -174,7 +174,7 @@ def compare(
     names = naming(datasets, called)
     if out is not None:
         save(datasets, names, out, theme=theme, force=force)
-    drawing = _shown(drawn(datasets, names, theme)[0], theme)
+    drawing = _shown(drawn(datasets, names, theme), theme)
     return Comparison(drawing, "\n".join(comparison_lines(called, names, compared(datasets), _WIDTH)))
 
 

@@ -195,7 +195,7 @@ def _drawn(
 
     The other profiles are rounded to `_FIGURES`. Series are not rounded, because they are saved too.
     """
-    drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error, line.minus)}
+    drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error)}
     drawn -= {name for name, *_ in measured}
     for table in found:
         table["curves"] = {

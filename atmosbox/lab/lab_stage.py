@@ -126,21 +126,19 @@ def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setu
     the five places along the other.
     """
     (name, span), *others = wanted.items()
-    ends = {_TIME: (0.0, setup.duration * setup.scale.time)}
+    ends: dict[str, tuple[float, ...]] = {_TIME: (0.0, setup.duration * setup.scale.time)}
     ends["height"] = (0.0, float(setup.parcel.length[2]) * setup.scale.length)
     found = (getattr(instrument, "environment", None) for instrument in setup.instruments)
     around = [each for each in found if isinstance(each, Environment)]
     if setup.ends and around:
         ends["parcel_height"] = tuple(around[0].height(t) for t in ends[_TIME])
-        ends |= dict.fromkeys(
-            ("parcel_pressure", "environment_pressure"), tuple(around[0].pressure(t) for t in ends[_TIME])
-        )
+        ends["parcel_pressure"] = ends["environment_pressure"] = tuple(around[0].pressure(t) for t in ends[_TIME])
     ends |= dict(others)
     begin, end = _shown(ends[_TIME], {"factor": 1.0 / to_si(1.0, setup.time_unit), "offset": 0.0})
     ends[_TIME] = begin, end
     for number, panel in enumerate(panels):
         axis, other = ("x", "y") if panel["across"] else ("y", "x")
-        lines = [line for line in panel["lines"] if line["role"] == "data" and "minus" not in line]
+        lines = [line for line in panel["lines"] if line["role"] == "data"]
         line = next((each for each in lines if each[axis]["name"] == name and each[other]["name"] in ends), None)
         if line is None or panel["kind"] not in ("line", "profile") or panel[axis]["log"]:
             continue

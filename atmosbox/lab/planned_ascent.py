@@ -37,7 +37,7 @@ def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, An
         panel["planned"] = {"x": [], "y": []}
         for line in panel["lines"]:
             points = {axis: _points(line[axis], way) for axis in ("x", "y")}
-            if "minus" in line or not (points["x"] and points["y"]):
+            if not (points["x"] and points["y"]):
                 continue
             for axis, values in points.items():
                 panel["planned"][axis] += values

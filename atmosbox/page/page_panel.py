@@ -109,7 +109,7 @@ def panel_record(
     >>> record["y"]["unit"], record["lines"][0]["y"]
     ('°C', {'name': 'air_temperature', 'factor': 1.0, 'offset': -273.15})
     """
-    from atmosbox.plot.units import of_difference, spelled
+    from atmosbox.plot.units import spelled
 
     first = panel.lines[0]
     shown = {
@@ -118,9 +118,6 @@ def panel_record(
     }
     measured = "x" if panel.measured_across else "y"
     labels = {"x": panel.x_label or meaning(first.x).words, "y": panel.y_label or meaning(first.y).words}
-    units = dict(shown)
-    if first.minus is not None:
-        units[measured] = of_difference(shown[measured])
     scales = {"x": (panel.x_scale, panel.x_invert), "y": (panel.y_scale, panel.y_invert)}
     return {
         "kind": panel.kind,
@@ -138,7 +135,7 @@ def panel_record(
         **{
             axis: {
                 "label": labels[axis],
-                "unit": "" if units[axis] == "1" else spelled(units[axis]),
+                "unit": spelled(shown[axis]),
                 "log": scales[axis][0] == "log",
                 "invert": scales[axis][1],
             }
@@ -166,8 +163,6 @@ def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Call
     }
     if line.error is not None:
         record["error"] = way(line.error, shown[measured], difference=True)
-        if line.role == "data" and line.minus is None and meaning(line.x if measured == "x" else line.y).unit == "K":
+        if line.role == "data" and meaning(line.x if measured == "x" else line.y).unit == "K":
             record["worst"] = WORST
-    if line.minus is not None:
-        record["minus"] = way(line.minus, shown[measured])
     return record

@@ -256,5 +256,5 @@ def _phrase(value: object, unit: str) -> str:
     if isinstance(value, int | float) and math.isfinite(value):
         from atmosbox.plot.units import spelled
 
-        return f"{value:.6g} {'' if unit == '1' else spelled(unit)}".replace("-", "\u2212").rstrip()
+        return f"{value:.6g} {spelled(unit)}".replace("-", "\u2212").rstrip()
     return str(value)

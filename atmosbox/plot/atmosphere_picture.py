@@ -49,8 +49,6 @@ class Ascent(NamedTuple):
     """Measured temperature [degC]."""
     pressure: Floats
     """Pressure of the environment at that height [hPa]."""
-    radius: Floats
-    """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
     liquid: Floats
     """Measured liquid per dry air [kg kg-1]; 0 in a scene without water."""
     haze: Floats
@@ -60,19 +58,12 @@ class Ascent(NamedTuple):
     base: float
     """Height of the measured cloud base [km]; NaN where the run measures none above the ground."""
 
-    def part(self, chosen: NDArray[np.bool_]) -> Ascent:
-        """Return the path in some of the frames only."""
-        parts: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self._fields[:-1]}
-        return self._replace(**parts)
-
-    def from_ground(self, temperature: float, pressure: float) -> Ascent:
-        """Return the path with its start at height 0 before the first frame, with a temperature and a pressure."""
-        size = np.cbrt((temperature + 273.15) / (self.temperature[0] + 273.15) * self.pressure[0] / pressure)
-        first = (0.0, 0.0, temperature, pressure, float(size), 0.0, np.inf, 0.0)
-        longer: dict[str, Any] = {
-            name: np.append(one, getattr(self, name)) for name, one in zip(self._fields, first, strict=False)
-        }
-        return self._replace(**longer)
+    @property
+    def radius(self) -> Floats:
+        """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
+        volume = (self.temperature + 273.15) / self.pressure
+        wide: Floats = np.cbrt(volume / volume[0])
+        return wide
 
     @property
     def crosses(self) -> bool:
@@ -86,7 +77,7 @@ class Ascent(NamedTuple):
         return np.asarray(self.liquid > self.haze)
 
 
-def ascent_of(dataset: xr.Dataset) -> Ascent:
+def ascent_of(dataset: xr.Dataset, start: tuple[float, ...] = (), *, risen: bool = False) -> Ascent:
     """Return the path of the parcel of a run.
 
     Parameters
@@ -94,6 +85,10 @@ def ascent_of(dataset: xr.Dataset) -> Ascent:
     dataset : xarray.Dataset
         The run, with ``parcel_height``, ``parcel_temperature`` and ``environment_pressure``; with water also
         ``cloud_liquid_water_mixing_ratio`` and ``largest_haze_mixing_ratio``, with rain ``rain_mixing_ratio``.
+    start : tuple of float
+        Temperature [degC] and pressure [hPa] at height 0, from which the parcel set out; empty if not known.
+    risen : bool
+        Whether frames above the equilibrium level are left out: a parcel does not rise by itself to these.
 
     Raises
     ------
@@ -115,28 +110,22 @@ def ascent_of(dataset: xr.Dataset) -> Ascent:
     >>> way.height.tolist(), way.crosses, way.cloudy.any()
     ([0.0, 1.0], False, np.False_)
     """
-    height, kelvin, pascal = (
+    time, height, kelvin, pascal = (
         read(dataset, name).values.astype(np.float64)
-        for name in ("parcel_height", "parcel_temperature", "environment_pressure")
+        for name in ("elapsed_time", "parcel_height", "parcel_temperature", "environment_pressure")
     )
-    time = read(dataset, "elapsed_time").values.astype(np.float64)
-    liquid, haze, rain = (
-        np.nan_to_num(dataset[name].values.astype(np.float64)) if name in dataset else np.full_like(height, missing)
-        for name, missing in (
-            ("cloud_liquid_water_mixing_ratio", 0.0), ("largest_haze_mixing_ratio", np.inf), ("rain_mixing_ratio", 0.0)
-        )
-    )  # fmt: skip
-    return Ascent(
-        time / time[-1] if time[-1] > 0.0 else np.zeros_like(time),
-        height / 1e3,
-        kelvin - 273.15,
-        pascal / 1e2,
-        np.cbrt(kelvin / kelvin[0] * pascal[0] / pascal),
-        liquid,
-        haze,
-        rain,
-        _base(dataset, height, pascal),
-    )
+    water = {"cloud_liquid_water_mixing_ratio": 0.0, "largest_haze_mixing_ratio": np.inf, "rain_mixing_ratio": 0.0}
+    rows = np.stack([
+        time / (time[-1] or 1.0), height / 1e3, kelvin - 273.15, pascal / 1e2,
+        *(np.nan_to_num(dataset[name].values) if name in dataset else 0 * time + none for name, none in water.items()),
+    ])  # fmt: skip
+    base = float(dataset.get("cloud_base", np.inf)) / 1e2
+    base = float(np.interp(-np.log(base), -np.log(rows[3]), rows[1])) if base <= rows[3].max() else np.nan
+    if risen and "el" in dataset:
+        rows = rows[:, ~(rows[3] < float(dataset["el"]) / 1e2)]
+    if start:
+        rows = np.column_stack([(0.0, 0.0, *start, 0.0, np.inf, 0.0), rows])
+    return Ascent._make([*rows, base])
 
 
 def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme, start: tuple[float, ...] = ()) -> list[Entry]:
@@ -169,14 +158,12 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme, start: tuple[
     >>> [label for _, label in draw_atmosphere(Figure().add_subplot(), dataset, THEMES["notes"])]
     ['parcel']
     """
-    way = ascent_of(dataset)
-    if "el" in dataset:  # above its equilibrium level a parcel does not rise
-        way = way.part(~(way.pressure < float(dataset["el"]) / 1e2))
-    if start:
-        way = way.from_ground(*start)
+    way = ascent_of(dataset, start, risen=True)
     draw_ground(axes, way, theme)
     if way.crosses:
-        stations = _turns(way.height)
+        rising = np.sign(np.diff(way.height))
+        rising[rising == 0.0] = 1.0
+        stations = np.array([0, *np.flatnonzero(np.diff(rising)) + 1, way.height.size - 1])
     else:
         heights = np.linspace(way.height[0], way.height[-1], 5 if theme.grows else 4)  # a slide has less room
         stations = np.unique([int(np.abs(way.height - height).argmin()) for height in heights])
@@ -197,7 +184,7 @@ def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
     >>> from atmosbox.plot.theme import THEMES
     >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
     >>> axes = Figure().add_subplot()
-    >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, one, none, one, none, np.nan), THEMES["notes"])
+    >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, none, one, none, np.nan), THEMES["notes"])
     >>> [round(float(height), 2) for height in axes.get_ylim()]
     [-0.6, 6.0]
     """
@@ -244,7 +231,7 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     >>> from matplotlib.figure import Figure
     >>> from atmosbox.plot.theme import THEMES
     >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
-    >>> way = Ascent(up / 5.0, up, one, one, one, 1e-3 * (up > 2.0), 5e-4 * one, none, 1.9)
+    >>> way = Ascent(up / 5.0, up, one, one, 1e-3 * (up > 2.0), 5e-4 * one, none, 1.9)
     >>> axes = Figure().add_subplot()
     >>> draw_ground(axes, way, THEMES["notes"])
     >>> [label for _, label in draw_way(axes, way, 8, np.array([0, 8]), THEMES["notes"])]
@@ -265,8 +252,6 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     if fallen[-1] > 0.0:
         falling = np.flatnonzero(np.diff(fallen) > _FAINTEST_RAIN * way.rain[-1])
         x, above, below = across[falling], way.height[falling], way.height[falling] - _GAP * room
-        if not way.crosses:
-            x, above, below = np.linspace(_MIDDLE - 0.25, _MIDDLE + 0.25, 9), np.full(9, base), np.zeros(9)
         streaks = np.stack([np.stack([x, above], axis=1), np.stack([x - 0.012, below], axis=1)], axis=1)
         look: dict[str, Any] = {"linewidth": theme.line, "zorder": 2.5}
         axes.add_collection(LineCollection([*streaks], colors=_BLUE, **look), autolim=False)
@@ -296,20 +281,6 @@ def _across(way: Ascent) -> Floats:
     return 0.055 + 0.89 * way.time if way.crosses else np.full_like(way.time, _MIDDLE)
 
 
-def _base(dataset: xr.Dataset, height: Floats, pressure: Floats) -> float:
-    """Return the height of the measured cloud base [km]; NaN where there is none above the ground."""
-    if "cloud_base" not in dataset or float(dataset.cloud_base) > pressure.max():
-        return float("nan")
-    return float(np.interp(-np.log(float(dataset.cloud_base)), -np.log(pressure), height)) / 1e3
-
-
-def _turns(height: Floats) -> NDArray[np.int64]:
-    """Return the indices of the frames in which a path begins, turns up or down, and ends."""
-    rising = np.sign(np.diff(height))
-    rising[rising == 0.0] = 1.0
-    return np.concatenate([[0], np.flatnonzero(np.diff(rising)) + 1, [height.size - 1]])
-
-
 def _puffs(axes: Axes, x: Floats, y: Floats, size: Floats, theme: Theme) -> list[PathCollection]:
     """Draw a cloud as discs whose radius is in units of the type size: first their common rim, then the white area."""
     area = np.pi * (size * theme.text) ** 2
@@ -334,15 +305,9 @@ def _tower(axes: Axes, base: float, top: float, room: float, theme: Theme) -> No
 
 
 def _say(
-    axes: Axes,
-    words: str,
-    at: tuple[float, float],
-    side: tuple[int, int],
-    theme: Theme,
-    *,
-    bold: bool = False,
-    lower: float = 0.0,
-) -> None:
+    axes: Axes, words: str, at: tuple[float, float], side: tuple[int, int], theme: Theme, *,
+    bold: bool = False, lower: float = 0.0,
+) -> None:  # fmt: skip
     """Write a text beside a parcel: to the right for side (1, 0), above for (0, 1), and so on.
 
     The text is moved down by ``lower`` times the type size.
@@ -351,7 +316,7 @@ def _say(
     away = 1.6 * _RADIUS * theme.text * (1.0 if up else 1.25)
     axes.annotate(
         words.replace("-", "−"), at, (0.0 if up else away * right, away * up - lower * theme.text),
-        textcoords="offset points", ha=("center", "left", "right")[right], va=("center", "bottom", "top")[up],
+        textcoords="offset points", ha=("center", "left", "right")[right], va="bottom" if up else "center",
         size=theme.text, weight="bold" if bold else "normal", color=_VERMILLION if bold else DARK, zorder=5.0,
         path_effects=[withStroke(linewidth=2.0 * theme.line, foreground="white", alpha=0.8)],
     )  # fmt: skip

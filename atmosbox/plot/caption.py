@@ -10,11 +10,8 @@ import xarray as xr
 
 from atmosbox.errors import FileError
 from atmosbox.plot.curve import read, unit_of
-from atmosbox.plot.discs import axis_names
 from atmosbox.plot.units import convert, of_difference, power_of_ten, spelled
 from atmosbox.scene.panels import Panel
-
-_COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")
 
 
 class Reading(NamedTuple):
@@ -113,7 +110,7 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
     agrees
     difference +0.12 K, expected within ±0.10 K
     """
-    value = _scalar(dataset, name)
+    value, theory, error = (_scalar(dataset, name + part) for part in ("", "_theory", "_se"))
     if not math.isfinite(value):
         return None
     attrs = read(dataset, name).attrs
@@ -121,73 +118,30 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
         return None
     unit = str(attrs.get("units", "1"))
     shown = str(attrs.get("display_units", unit))
-    theory = _scalar(dataset, f"{name}_theory")
-    error = float(convert(_scalar(dataset, f"{name}_se"), unit, shown, name=name, difference=True))
-    measured = float(convert(value, unit, shown, name=name))
+    apart = of_difference(shown)
+    error = float(convert(error, unit, shown, name=name, difference=True))
     label = str(attrs.get("display_name") or attrs.get("long_name") or name.replace("_", " "))
-    digits, deviation, power = _digits(measured, error)
-    spread = " ".join(part for part in ("±" if deviation else "", deviation, power, _symbol(shown)) if part)
+    digits, deviation, power = _digits(float(convert(value, unit, shown, name=name)), error)
+    spread = " ".join(part for part in ("±" if deviation else "", deviation, power, spelled(shown)) if part)
     if not math.isfinite(theory):
         return Reading(label, digits, spread, "", "")
-    expected = float(convert(theory, unit, shown, name=name))
     called = str(read(dataset, f"{name}_theory").attrs.get("display_name", "theory"))
-    apart, most = (
-        float(convert(size, unit, of_difference(shown), name=name, difference=True))
-        for size in (
-            value - theory,
-            sum(attrs.get(f"misfit_allowed_{part}", 0.0) for part in ("by_chance", "as_known")),
-        )
-    )
-    away = _known(apart, error, _symbol(of_difference(shown)), signed=True)
-    if abs(apart) <= most:
-        away = ""
+    expected = _known(float(convert(theory, unit, shown, name=name)), error, shown)
+    misfit = float(convert(value - theory, unit, apart, name=name, difference=True))
+    most = sum(attrs.get(f"misfit_allowed_{part}", 0.0) for part in ("by_chance", "as_known"))
+    most = float(convert(most, unit, apart, name=name, difference=True))
+    away = f"difference {_known(misfit, error, apart, signed=True)}"
+    if abs(misfit) <= most:
+        away = "agrees"
     elif most > 0.0:
-        away += f", expected within ±{_known(most, error, _symbol(of_difference(shown)))}"
-    return Reading(
-        label,
-        digits,
-        spread,
-        f"{called} {_known(expected, error, _symbol(shown))}",
-        f"difference {away}" if away else "agrees",
-    )
+        away += f", expected within ±{_known(most, error, apart)}"
+    return Reading(label, digits, spread, f"{called} {expected}", away)
 
 
 def _known(value: float, error: float, unit: str, *, signed: bool = False) -> str:
     """Return a number with as many digits as its error allows, and its unit, joined by spaces that do not break."""
     digits, _, power = _digits(value, error, signed=signed)
-    return "\u00a0".join(part for part in (digits, power, unit.replace(" ", "\u00a0")) if part)
-
-
-def _symbol(unit: str) -> str:
-    """Return a unit as it is printed; empty for a pure number."""
-    return "" if unit == "1" else spelled(unit)
-
-
-def number(value: float, error: float = math.nan, *, signed: bool = False) -> str:
-    """Return a number with its standard error, with as many digits as the error allows.
-
-    Parameters
-    ----------
-    value, error : float
-        The number and its standard error, NaN for none.
-    signed : bool
-        Whether a positive number is written with a plus sign.
-
-    Returns
-    -------
-    str
-        The number.
-
-    Examples
-    --------
-    >>> number(0.1234, 0.0512), number(-3.2e-15, signed=True), number(17.3, 1.26)
-    ('0.12 ± 0.05', '−3.2 × 10⁻¹⁵', '17.3 ± 1.3')
-    """
-    digits, deviation, power = _digits(value, error, signed=signed)
-    text = f"{digits} ± {deviation}" if deviation else digits
-    if power:
-        text = f"({text}) {power}" if deviation else f"{text} {power}"
-    return text
+    return "\u00a0".join(part for part in (digits, power, spelled(unit).replace(" ", "\u00a0")) if part)
 
 
 def _digits(value: float, error: float, *, signed: bool = False) -> tuple[str, str, str]:
@@ -232,13 +186,14 @@ def footer(dataset: xr.Dataset) -> str:
     """
     parameters = stated(dataset, "atmosbox_parameters", dict)
     settings = parameters.get("settings", {})
-    count = next((settings[name] for name in _COUNTS if name in settings), dataset.sizes.get("molecule"))
-    seed, engine = settings.get("seed"), parameters.get("engine", settings.get("engine"))
+    count = settings.get("molecules", dataset.sizes.get("molecule"))
+    seed, engine = settings.get("seed"), parameters.get("engine")
     status = dataset.attrs.get("atmosbox_status", "complete")
+    particle = ("disc" if "disc_position" in dataset.variables else "molecule") + ("" if count == 1 else "s")
     parts = [
-        f"atmosbox {parameters.get('version', dataset.attrs.get('product_version', ''))}".rstrip(),
+        f"atmosbox {parameters.get('version', '')}".rstrip(),
         str(parameters.get("scene", "")),
-        "" if count is None else f"{_grouped(count)} {_particle(dataset)}{'' if count == 1 else 's'}",
+        "" if count is None else f"{int(count):,} {particle}".replace(",", "\u2009" if count >= 10000 else ""),
         "" if seed is None else f"seed {seed}",
         "" if engine is None else f"{engine} engine",
         "" if status == "complete" else f"{status} run",
@@ -263,8 +218,7 @@ def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tup
     (('p', 'hPa'), ('z', '1'))
     """
     if panel.kind == "discs":
-        first, second = axis_names(dataset)
-        return (panel.x_label or first, panel.x_unit or "nm"), (panel.y_label or second, panel.x_unit or "nm")
+        return (panel.x_label or "x", panel.x_unit or "nm"), (panel.y_label or "z", panel.x_unit or "nm")
     if panel.kind == "atmosphere":
         return (panel.x_label, ""), (panel.y_label or "height", "km")
     line = panel.lines[0]
@@ -290,13 +244,3 @@ def stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
     if not isinstance(found, kind):
         raise FileError(f"The attribute {name} of the file cannot be read: it was not written by atmosbox.")
     return found
-
-
-def _particle(dataset: xr.Dataset) -> str:
-    """Return the word for a molecule in the footer: "disc" for a planar scene, "molecule" for every other."""
-    return "disc" if "disc_position" in dataset.variables else "molecule"
-
-
-def _grouped(count: float) -> str:
-    """Return a whole number as text; numbers of five digits or more have thin spaces between the thousands."""
-    return f"{int(count):,}".replace(",", "\u2009") if count >= 10000 else f"{int(count)}"

@@ -6,19 +6,17 @@ must have against 1/T at its temperature. The lines have these slopes: nothing i
 
 from __future__ import annotations
 
+import json
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from atmosbox import theory
-from atmosbox.plot.caption import Reading, number, stated
-from atmosbox.plot.layout import page
-from atmosbox.plot.run_figure import painter
-from atmosbox.plot.theme import Theme
-from atmosbox.scene.panels import Line, Panel
+from atmosbox.plot.caption import stated
+from atmosbox.scene.panels import Line, Panel, to_json
 from atmosbox.theory.constants import BOLTZMANN
 
 Floats = NDArray[np.float64]
@@ -28,6 +26,7 @@ _NEAR = 0.8
 _REACH = 0.45
 """Length of the line of a run to each side of its point, in mean distances between points."""
 _DENSE = ("liquid_density", "vapor_density")
+_TOO_HIGH = "Both meet at a temperature that is too high: the law of their difference holds only near it."
 
 
 def is_coexistence(dataset: xr.Dataset, names: list[str]) -> bool:
@@ -46,38 +45,34 @@ def _known(data: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(data.vapor_pressure.values) & np.isfinite(data.clapeyron_slope.values))
 
 
-def draw_coexistence(dataset: xr.Dataset, members: int, look: Theme) -> Figure:
-    """Draw ln p against 1/T with the slope that each run has measured, and the densities of liquid and vapour.
+def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
+    """Return a sweep with the panels of ln p against 1/T and of the densities of liquid and vapour.
+
+    Its headlines are the slope of ln p through all points, with the mean of the slopes L/ΔZ that the runs have measured
+    as its theory, and, if enough temperatures are near it, the critical temperature.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The sweep, for which `is_coexistence` is true.
-    members : int
-        Number of runs at each temperature.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure. Above the panels it gives the slope of ln p through all points beside the mean of the slopes L/ΔZ
-        that the runs have measured, and, if enough temperatures are near it, the critical temperature.
+    runs : str
+        What a point is: one run, or the mean of several.
     """
     data = dataset.isel(temperature=np.flatnonzero(_known(dataset)))
-    parameters = stated(data, "atmosbox_parameters", dict)
-    settings = parameters.get("settings", {})
+    settings = stated(data, "atmosbox_parameters", dict).get("settings", {})
     fluid = theory.SIMPLE_FLUIDS.get(str(settings.get("substance", "")))
     strength = float(settings.get("attraction", 1.0))
-    readings, panels, flat = [_slopes(data)], [], _curves(data, fluid, strength)
-    pressure = [
-        Line("inverse", "p", "runs", error="p_se"),
+    flat = _curves(data, fluid, strength).assign(_slopes(data))
+    lines = [
+        Line("inverse", "p", runs, error="p_se"),
         Line("inverse_ends", "slope", "slope L/ΔZ of each run", "reference"),
     ]
     if fluid is not None:
-        pressure.append(Line("inverse_fine", "published", "published simulations", "theory"))
+        lines.append(Line("inverse_fine", "published", "published simulations", "theory"))
         if strength == 1.0:
-            pressure.append(Line("inverse_fine", "real", f"real {fluid.name}", "environment"))
-    title = "Clausius and Clapeyron: ln p against 1/T"
-    panels.append(Panel("line", title, tuple(pressure), "1000 K / T", "vapour pressure", "1", "bar", y_scale="log"))
+            lines.append(Line("inverse_fine", "real", f"real {fluid.name}", "environment"))
+    title, label = "Clausius and Clapeyron: ln p against 1/T", "vapour pressure"
+    panels = [Panel("line", title, tuple(lines), "1000 K / T", label, "1", "bar", y_scale="log")]
     if set(_DENSE) <= set(data):
         lines = [
             Line(name, "kelvin", label, error=f"{name}_se")
@@ -85,16 +80,12 @@ def draw_coexistence(dataset: xr.Dataset, members: int, look: Theme) -> Figure:
         ]
         lines.append(Line("mean", "kelvin", "mean of both"))
         if fluid is not None:
-            readings.append(_critical(data, fluid, strength))
+            flat = flat.assign(_critical(data, fluid.critical_temperature * strength))
             lines.append(Line("width", "critical", "critical temperature", "theory"))
-        panels.append(Panel("profile", "Liquid and vapour become alike", tuple(lines), "density", "temperature"))
-    runs = "one run" if members == 1 else f"mean of {members} runs"
-    small = f"atmosbox {parameters.get('version', data.attrs.get('product_version', ''))} · {parameters['scene']}"
-    small += f" · each point {runs} · bars: ± 1 standard error"
-    heading = str(data.attrs.get("title", ""))
-    return page(
-        tuple(panels), look, flat, painter(flat, look), [each for each in readings if each is not None], small, heading
-    )
+        title, note = "Liquid and vapour become alike", _TOO_HIGH if "meeting" in flat else ""
+        panels.append(Panel("profile", title, tuple(lines), "density", "temperature", note=note))
+    headlines = json.dumps(["steepness", "meeting"])
+    return flat.assign_attrs(data.attrs, atmosbox_panels=to_json(panels), atmosbox_headlines=headlines)
 
 
 def _error(data: xr.Dataset, name: str) -> Floats:
@@ -124,13 +115,10 @@ def _curves(data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float)
         fine = np.linspace(kelvin.min() - room, kelvin.max() + room, 100)
         unit = strength * fluid.well_depth / fluid.well_diameter**3
         model = theory.well_vapor_pressure(fine * BOLTZMANN / (strength * fluid.well_depth)) * unit
-        real = np.where(
-            fine < fluid.critical_temperature,
-            fluid.vapor_pressure(np.minimum(fine, fluid.critical_temperature)),
-            np.nan,
-        )
         flat["inverse_fine"] = ("fine", 1e3 / fine)
-        flat["published"], flat["real"] = (("fine", each, {"units": "Pa"}) for each in (model, real))
+        flat["published"], flat["real"] = (
+            ("fine", each, {"units": "Pa"}) for each in (model, fluid.vapor_pressure(fine))
+        )
         flat["critical"] = ((), fluid.critical_temperature * strength, {"units": "K"})
     return flat
 
@@ -140,48 +128,37 @@ def _parted(values: Floats) -> Floats:
     return np.column_stack([values, np.full(len(values), np.nan)]).ravel()
 
 
-def _slopes(data: xr.Dataset) -> Reading | None:
+def _headline(name: str, found: tuple[float, float], told: tuple[float, float], *labels: str) -> dict[str, Any]:
+    """Return a headline number in kelvin with its error and its theory, whose error is known, too."""
+    chance = 4.0 * math.hypot(found[1], told[1]) if told[1] else 0.0
+    attrs = [{"units": "K", "display_name": label, "misfit_allowed_by_chance": chance} for label in labels]
+    return {name: ((), found[0], attrs[0]), f"{name}_se": found[1], f"{name}_theory": ((), told[0], attrs[1])}
+
+
+def _slopes(data: xr.Dataset) -> dict[str, Any]:
     """Return the slope of ln p through all points beside the weighted mean of the slopes that the runs have measured.
 
-    None if a standard error is not known.
+    Empty if a standard error is not known.
     """
     kelvin, pressure, slope = (data[name].values for name in ("temperature", "vapor_pressure", "clapeyron_slope"))
     error, spread = _error(data, "vapor_pressure"), _error(data, "clapeyron_slope")
     if not (error > 0.0).all() or not (spread > 0.0).all():
-        return None
-    through, through_se = theory.slope_of_pressure(kelvin, pressure, error)
+        return {}
     weight = 1.0 / spread**2
-    within, within_se = float((weight * slope).sum() / weight.sum()), float(weight.sum() ** -0.5)
-    value, _, deviation = number(through, through_se).partition(" ± ")
-    apart = number(through - within, math.hypot(through_se, within_se), signed=True)
-    return Reading(
-        "slope of ln p against 1/T through the points",
-        value,
-        f"± {deviation} K",
-        f"L/ΔZ, measured within the runs: {number(within, within_se)} K",
-        f"difference {apart} K",
-    )
+    within = float((weight * slope).sum() / weight.sum()), float(weight.sum() ** -0.5)
+    labels = "slope of ln p against 1/T through the points", "L/ΔZ, measured within the runs"
+    return _headline("steepness", theory.slope_of_pressure(kelvin, pressure, error), within, *labels)
 
 
-def _critical(data: xr.Dataset, fluid: theory.SimpleFluid, strength: float) -> Reading | None:
+def _critical(data: xr.Dataset, expected: float) -> dict[str, Any]:
     """Return the critical temperature, at which the densities of liquid and vapour meet, from the warmest points.
 
-    None for fewer than three such points, or if a standard error is not known.
+    Empty for fewer than three such points, or if a standard error is not known.
     """
-    expected = fluid.critical_temperature * strength
     warm = data.isel(temperature=np.flatnonzero(data.temperature.values > _NEAR * expected))
-    if warm.sizes["temperature"] < 3:
-        return None
-    liquid, vapour = (warm[name].values for name in ("liquid_density", "vapor_density"))
-    errors = [_error(warm, name) for name in ("liquid_density", "vapor_density")]
-    if not all((each > 0.0).all() for each in errors):
-        return None
-    found = theory.critical_point(warm.temperature.values, liquid, vapour, *errors)
-    value, _, deviation = number(found.temperature, found.temperature_se).partition(" ± ")
-    return Reading(
-        "critical temperature, where both densities meet",
-        value,
-        f"± {deviation} K",
-        f"of this model {expected:.1f} K",
-        "expected too high: the law of their difference holds only near it",
-    )
+    errors = [_error(warm, name) for name in _DENSE]
+    if warm.sizes["temperature"] < 3 or not all((each > 0.0).all() for each in errors):
+        return {}
+    found = theory.critical_point(warm.temperature.values, *(warm[name].values for name in _DENSE), *errors)
+    labels = "critical temperature, where both densities meet", "of this model"
+    return _headline("meeting", (found.temperature, found.temperature_se), (expected, 0.0), *labels)

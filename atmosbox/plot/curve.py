@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.plot.units import convert, of_difference
+from atmosbox.plot.units import convert
 from atmosbox.scene.panels import Line, Panel
 
 WORST = 0.2
@@ -111,8 +111,7 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
     (name, unit), other = axes if measured_is_x else axes[::-1]
     along = _values(dataset, *other)
-    plain = line.minus is None
-    measured = _values(dataset, name, unit) if plain else _misfit(dataset, name, str(line.minus), unit)
+    measured = _values(dataset, name, unit)
     error = None if line.error is None else _values(dataset, line.error, unit, difference=True)
     try:
         along, measured = np.broadcast_arrays(np.atleast_1d(along), measured)
@@ -123,7 +122,7 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
             f"The variables {', '.join(line.variables)} of the file differ in length and cannot be drawn "
             f"together: {_AGAIN}."
         ) from fault
-    if line.error is not None and line.role == "data" and plain and _unit(read(dataset, name)) == "K":
+    if line.error is not None and line.role == "data" and _unit(read(dataset, name)) == "K":
         error_in_file = read(dataset, line.error).values
         unknown = ~(error_in_file <= WORST * read(dataset, name).values)
         measured = np.where(unknown & np.isfinite(error_in_file).any(), np.nan, measured)
@@ -185,7 +184,7 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
     Returns
     -------
     str
-        The unit of the panel or, if the panel gives none, that of the file; for misfits the unit of a difference.
+        The unit of the panel or, if the panel gives none, that of the file.
 
     Raises
     ------
@@ -201,9 +200,7 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
     """
     first = panel.lines[0]
     unit = panel.x_unit if axis == "x" else panel.y_unit
-    unit = unit or _unit(read(dataset, first.x if axis == "x" else first.y))
-    measured_axis = "x" if panel.measured_across else "y"
-    return of_difference(unit) if axis == measured_axis and first.minus is not None else unit
+    return unit or _unit(read(dataset, first.x if axis == "x" else first.y))
 
 
 def _values(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = False) -> NDArray[np.float64]:
@@ -214,14 +211,6 @@ def _values(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = Fa
             f"and a line has one: {_AGAIN}."
         )
     return convert(variable.values, _unit(variable), shown, name=name, difference=difference)
-
-
-def _misfit(dataset: xr.Dataset, name: str, minus: str, shown: str) -> NDArray[np.float64]:
-    """Return the first variable minus the second, in the units that are shown."""
-    first, second = read(dataset, name), read(dataset, minus)
-    unit = _unit(first)
-    difference = _values(dataset, name, unit) - convert(second.values, _unit(second), unit, name=minus)
-    return convert(difference, unit, shown, name=name, difference=True)
 
 
 def _unit(variable: xr.DataArray) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from atmosbox.plot.atmosphere_picture import draw_atmosphere
 from atmosbox.plot.curve import Curve, curve, edges
 from atmosbox.plot.discs import draw_discs
-from atmosbox.plot.theme import AREAS, CURVES, DARK, DATA_COLOURS, DATA_MARKERS, FAINT, Theme
+from atmosbox.plot.theme import AREAS, CURVES, DARK, DATA_MARKERS, FAINT, Theme
 from atmosbox.scene.panels import Line, Panel
 
 # A measured curve of at most this many values is drawn as points with error bars, a longer one as a line with a band.
@@ -24,7 +25,9 @@ MOST_POINTS = 40
 # A curve that crosses its whole range more often than this is drawn thinner, so that its scatter does not become a
 # solid area; at the thinnest, this share of the usual width.
 _MOST_CROSSINGS, _THINNEST = 25.0, 0.4
-_ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
+_ORDER = {"band": 1.0, "tint": 1.1, "reference": 1.5, "environment": 2.0, "data": 3.1, "hollow": 3.5, "theory": 4.0}
+MEASURED = (_ORDER["tint"], _ORDER["data"], _ORDER["hollow"])
+"""Drawing orders (``zorder``) of all that shows a measured curve; nothing else has them."""
 
 
 def draw_line(
@@ -74,8 +77,8 @@ def draw_line(
         style["linewidth"] *= min(1.0, max(_THINNEST, _MOST_CROSSINGS / _crossings(x if along_x else y)))
     artists: list[Artist] = []
     if error is not None:
-        alpha = 0.3 if measured else 0.15
-        fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER["band"]}
+        order, alpha = ("tint", 0.3) if measured else ("band", 0.15)
+        fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER[order]}
         along, value, band = (y, x, axes.fill_betweenx) if along_x else (x, y, axes.fill_between)
         artists.append(band(along, value - error, value + error, **fill))
     artists.extend(axes.plot(x, y, **style))
@@ -87,9 +90,9 @@ def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], inde
     x, y, error = values
     look = {"linestyle": "none", "marker": DATA_MARKERS[index % len(DATA_MARKERS)], "color": style["color"]}
     bars = {"xerr" if panel.measured_across else "yerr": error, "elinewidth": style["linewidth"]}
-    drawn = axes.errorbar(x, y, capsize=0.0, zorder=style["zorder"], **look, **bars)
+    drawn = axes.errorbar(x, y, zorder=style["zorder"], **look, **bars)
     if (unsure := hollow_points(values)).any():
-        axes.plot(x[unsure], y[unsure], markerfacecolor="white", zorder=style["zorder"] + 0.5, **look)
+        axes.plot(x[unsure], y[unsure], markerfacecolor="white", zorder=_ORDER["hollow"], **look)
     return (cast(Artist, drawn),)
 
 
@@ -126,18 +129,9 @@ def _crossings(values: NDArray[np.float64]) -> float:
 
 
 def draw_steps(
-    axes: Axes,
-    panel: Panel,
-    line: Line,
-    dataset: xr.Dataset,
-    theme: Theme,
-    index: int,
-    *,
-    colour: Any = None,
-    style: Any = "solid",
-    filled: bool = True,
+    axes: Axes, panel: Panel, line: Line, dataset: xr.Dataset, theme: Theme, index: int, **look: Any
 ) -> tuple[Artist, ...]:
-    """Draw a histogram, between the bounds of its bins.
+    """Draw a histogram, between the bounds of its bins, with the area below tinted unless ``look`` is given.
 
     Parameters
     ----------
@@ -145,15 +139,8 @@ def draw_steps(
         One of its measured lines.
     index : int
         Number of measured lines before this one in the panel.
-    colour, style
-        Colour and dashes, if they are not those of its role.
-    filled : bool
-        Whether the area below is tinted.
-
-    Returns
-    -------
-    tuple of Artist
-        The artists that stand for it in the legend.
+    **look
+        Overrides of the style: ``color``, ``linestyle``.
 
     Examples
     --------
@@ -168,13 +155,13 @@ def draw_steps(
     [0.0, 100.0, 200.0]
     """
     x, y, error = curve(dataset, panel, line)
-    colour = colour or DATA_COLOURS[index % len(DATA_COLOURS)]
-    bounds, order = edges(dataset, panel, line), _ORDER["data"]
-    tint: dict[str, Any] = {"color": colour, "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["band"]}
-    area = (axes.stairs(y, bounds, fill=True, **tint),) if filled else ()
-    steps = axes.stairs(y, bounds, color=colour, linewidth=theme.line, linestyle=style, baseline=None, zorder=order)
+    style = line_style("data", theme, index) | {"linewidth": theme.line, "zorder": _ORDER["data"]} | look
+    bounds = edges(dataset, panel, line)
+    tint = {"color": style["color"], "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["tint"]}
+    area = () if look else (axes.stairs(y, bounds, fill=True, **tint),)
+    steps = axes.stairs(y, bounds, baseline=None, **style)
     if error is not None:
-        axes.errorbar(x, y, error, linestyle="none", color=colour, capsize=0.0, zorder=_ORDER["data"])
+        axes.errorbar(x, y, error, linestyle="none", color=style["color"], zorder=style["zorder"])
     return *area, steps
 
 
@@ -200,29 +187,15 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
 
 
 Entry = tuple[tuple[Artist, ...], str]
+Curves = Callable[[Axes, Panel, Theme], tuple[list[Entry], int]]
+"""Draws the curves of a panel; returns the legend entries, and the number of values of the longest curve."""
 
-# If the highest pressure is between this and 1000 hPa, the axis still begins at 1000 hPa.
-_NEAR_THE_GROUND = 930.0
-# A single value is drawn in the middle of a logarithmic axis, from the value divided by this to the value times this.
-_ONE_LEVEL = 1.3
 # The axis of a histogram ends where data and theory are below this share of the peak.
 _NEGLIGIBLE = 1e-3
 
 
-def draw(
-    axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme, only: tuple[Line, ...] | None = None
-) -> list[Entry]:
-    """Draw a panel, and set the scales and the limits of its axes.
-
-    Parameters
-    ----------
-    only : tuple of Line, optional
-        The lines to draw; by default all.
-
-    Returns
-    -------
-    list of tuple
-        The entries of the legend: the artists of a curve, and its label.
+def draw(axes: Axes, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, curves: Curves) -> list[Entry]:
+    """Draw a panel of one or several runs, and set the scales and the limits of its axes; return its legend entries.
 
     Raises
     ------
@@ -232,28 +205,30 @@ def draw(
     Examples
     --------
     >>> import xarray as xr
+    >>> from functools import partial
     >>> from matplotlib.figure import Figure
     >>> from atmosbox.plot.theme import THEMES
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel = Panel("profile", "Pressure", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> [label for _, label in draw(Figure().add_subplot(), panel, dataset, THEMES["notes"])]
+    >>> curves, axes = partial(draw_lines, dataset), Figure().add_subplot()
+    >>> [label for _, label in draw(axes, panel, [dataset], THEMES["notes"], curves)]
     ['air']
     """
     if panel.kind == "discs":
-        return draw_discs(axes, panel, dataset, theme)
+        return draw_discs(axes, panel, runs[0], theme)
     if panel.kind == "atmosphere":
-        return draw_atmosphere(axes, dataset, theme, panel.start)
-    axes.set_xscale(panel.x_scale)
-    axes.set_yscale(panel.y_scale)
+        return draw_atmosphere(axes, runs[0], theme, panel.start)
+    axes.set(xscale=panel.x_scale, yscale=panel.y_scale)
     axes.grid(visible=True)
-    entries, most = draw_lines(axes, panel, dataset, theme, only)
-    if panel.areas:
-        x, y, _ = curve(dataset, panel, panel.lines[0])
+    entries, most = curves(axes, panel, theme)
+    if panel.areas and len(runs) == 1:
+        x, y, _ = curve(runs[0], panel, panel.lines[0])
         for name, sign in (("CAPE", 1.0), ("CIN", -1.0)):
             area = axes.fill_betweenx(y, np.where(sign * x > 0.0, x, 0.0), zorder=0.8, **AREAS[name])
             entries.append(((area,), name))
     set_limits(axes, panel, most)
-    draw_guides(axes, panel, theme)
+    if len(runs) == 1:
+        draw_guides(axes, panel, theme)
     return entries
 
 
@@ -261,7 +236,7 @@ def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
     """Draw the guides of a panel, their texts away from its first curve, and mark where its curves begin."""
     look: dict[str, Any] = {"size": theme.text, "color": FAINT, "textcoords": "offset points", "zorder": 5.0}
     thin: dict[str, Any] = {"color": FAINT, "linewidth": 0.7 * theme.line, "zorder": 1.4}
-    drawn = [line for line in axes.lines if 0.0 <= line.get_zorder() - _ORDER["data"] < 0.5]
+    drawn = [line for line in axes.lines if line.get_zorder() == _ORDER["data"]]
     curves = [points for points in (np.asarray(line.get_xydata()) for line in drawn) if points.size]
     gap = 0.25 * theme.text
     for axis, value, words in panel.guides:
@@ -284,7 +259,7 @@ def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
         axes.annotate("start", begins, (1.5 * theme.marker, gap), **look | {"color": DARK})
 
 
-def _from_start(panel: Panel, line: Line, values: Curve) -> Curve:
+def from_start(panel: Panel, line: Line, values: Curve) -> Curve:
     """Return a curve that begins where the panel says; half a frame from the first on a logarithmic axis."""
     begins = line.role == "data" or (panel.kind == "profile" and line.role in ("theory", "environment"))
     if not (panel.start and begins and values.x.size):
@@ -294,15 +269,8 @@ def _from_start(panel: Panel, line: Line, values: Curve) -> Curve:
     return Curve(np.append(x, values.x), np.append(panel.start[1], values.y), error)
 
 
-def draw_lines(
-    axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme, only: tuple[Line, ...] | None = None
-) -> tuple[list[Entry], int]:
-    """Draw the curves of a panel into axes whose scales are set.
-
-    Parameters
-    ----------
-    only : tuple of Line, optional
-        The lines to draw; by default all.
+def draw_lines(dataset: xr.Dataset, axes: Axes, panel: Panel, theme: Theme) -> tuple[list[Entry], int]:
+    """Draw the curves of one run into axes whose scales are set.
 
     Returns
     -------
@@ -323,7 +291,7 @@ def draw_lines(
     >>> from atmosbox.plot.theme import THEMES
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel = Panel("profile", "Pressure", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> draw_lines(Figure().add_subplot(), panel, dataset, THEMES["notes"])[1]
+    >>> draw_lines(dataset, Figure().add_subplot(), panel, THEMES["notes"])[1]
     2
     """
     seen: Counter[str] = Counter()
@@ -332,12 +300,10 @@ def draw_lines(
     for line in panel.lines:
         index = seen[line.role]
         seen[line.role] += 1
-        if only is not None and line not in only:
-            continue
         if panel.kind == "histogram" and line.role == "data":
             artists = draw_steps(axes, panel, line, dataset, theme, index)
         else:
-            values = _from_start(panel, line, curve(dataset, panel, line))
+            values = from_start(panel, line, curve(dataset, panel, line))
             artists = draw_line(axes, panel, line, values, theme, index)
             most = max(most, values.x.size)
         if line.label not in [label for _, label in entries]:
@@ -366,13 +332,6 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
     """
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
-    (left, right), (low, high) = axes.dataLim.intervalx, axes.dataLim.intervaly
-    if panel.x_scale == "log" and right * (1.0 - 1e-9) <= left <= right:
-        axes.set_autoscalex_on(False)
-        axes.set_xlim(left / _ONE_LEVEL, right * _ONE_LEVEL)
-    if panel.y_scale == "log" and high * (1.0 - 1e-9) <= low <= high:
-        axes.set_autoscaley_on(False)
-        axes.set_ylim(low / _ONE_LEVEL, high * _ONE_LEVEL)
     axes.autoscale_view()
     if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:
         axes.set_xlim(left=0.0)
@@ -380,13 +339,9 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
         axes.set_ylim(bottom=0.0, top=axes.get_ylim()[1] * 1.05)
         axes.set_xlim(right=_end_of_histogram(axes))
     elif panel.kind == "profile" and panel.y_scale == "linear":
-        low, high = axes.dataLim.intervaly
-        if np.isfinite([low, high]).all() and 0.0 <= low < 0.2 * high:
+        low, high = axes.dataLim.intervaly  # infinite without a value
+        if 0.0 <= low < 0.2 * high:
             axes.set_ylim(bottom=0.0)
-    elif panel.kind == "profile" and panel.y_unit == "hPa":
-        top, bottom = axes.dataLim.intervaly
-        if _NEAR_THE_GROUND < bottom < 1000.0:
-            axes.set_ylim(top=1000.0 * (1000.0 / top) ** 0.02)
     if panel.x_limits:
         axes.set_xlim(*panel.x_limits)
     if panel.y_limits:

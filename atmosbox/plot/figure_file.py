@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
-import os
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
 
-from atmosbox.file.output_path import named, write_whole
+from atmosbox.file.output_path import AnyPath, named, write_whole
 from atmosbox.plot import sweep_figure, tradeoff_figure
 from atmosbox.plot.run_figure import figure, figure_with_box
 from atmosbox.plot.theme import find, style
@@ -20,7 +21,7 @@ FORMATS = ("png", "svg", "pdf")
 
 def save(
     dataset: xr.Dataset,
-    path: str | os.PathLike[str],
+    path: AnyPath,
     format: str | None = None,
     *,
     theme: str = "notes",
@@ -68,12 +69,19 @@ def save(
     Traceback (most recent call last):
     atmosbox.errors.SettingError: format = gif is unknown: give a file name or format of png, svg or pdf.
     """
+    title, drawing = str(dataset.attrs.get("title", "atmosbox")), partial(drawn, dataset, theme, with_box=with_box)
+    return write(drawing, [dataset], title, path, format, theme=theme, force=force)
+
+
+def write(
+    draw: Callable[[], Figure], runs: Sequence[xr.Dataset], title: str, path: AnyPath, format: str | None, *,
+    theme: str, force: bool,
+) -> Path:  # fmt: skip
+    """Write a figure of some runs into a file, as `save` does; it is drawn once it is known that it can be written."""
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    drawing = drawn(dataset, theme, with_box=with_box)
-    title = str(dataset.attrs.get("title", "atmosbox"))
-    parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
-    write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
+    parameters = "; ".join(str(dataset.attrs.get("atmosbox_parameters", "")) for dataset in runs)
+    write_whole(path, render(draw(), kind, theme, title=title, parameters=parameters))
     return path
 
 
@@ -107,12 +115,12 @@ def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: st
     >>> render(Figure(), "png", "notes", title="Nothing", parameters="{}")[1:4]
     b'PNG'
     """
-    metadata: dict[str, dict[str, Any]] = {
-        "png": {"Title": title, "Software": "atmosbox", "Description": parameters},
-        "svg": {"Title": title, "Creator": "atmosbox", "Description": parameters, "Date": None},
-        "pdf": {"Title": title, "Creator": "atmosbox", "Keywords": parameters, "CreationDate": None},
+    told: dict[str, dict[str, Any]] = {
+        "png": {"Software": "atmosbox", "Description": parameters},
+        "svg": {"Creator": "atmosbox", "Description": parameters, "Date": None},
+        "pdf": {"Creator": "atmosbox", "Keywords": parameters, "CreationDate": None},
     }
     stream = io.BytesIO()
     with style(find(theme)):
-        drawing.savefig(stream, format=kind, dpi=dpi, metadata=metadata[kind])
+        drawing.savefig(stream, format=kind, dpi=dpi, metadata={"Title": title, **told[kind]})
     return stream.getvalue()

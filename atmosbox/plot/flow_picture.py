@@ -9,15 +9,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from atmosbox.plot.layout import TextMeasure
 from atmosbox.plot.theme import DARK, Theme
 from atmosbox.plot.units import convert, spelled
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-
-__all__ = ["flow_height", "instants", "put_flow"]
 
 _COLOURS = "inferno"  # dark is cold, light is warm, in print too
 _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
@@ -54,7 +52,7 @@ def flow_height(dataset: xr.Dataset, look: Theme) -> float:
     return min(each, _TALLEST * wide if look.grows else _TALLEST_ON_SCREEN * high) + _AROUND * look.text
 
 
-def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> None:
+def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float) -> None:
     """Draw the two pictures in a row, below a distance from the upper end of the page [pt].
 
     Parameters
@@ -64,77 +62,62 @@ def put_flow(dataset: xr.Dataset, look: Theme, drawing: Figure, top: float) -> N
     top : float
         The distance [pt].
     """
-    room = flow_height(dataset, look)
+    drawing, box = measure.figure, flow_height(dataset, look) - _AROUND * look.text
     wide, high = (72.0 * float(size) for size in drawing.get_size_inches())
     bounds = [dataset[f"{name}_bnds"].values / 1000.0 for name in ("distance", "height")]
     edges = [np.append(each[:, 0], each[-1, 1]) for each in bounds]
-    box = room - _AROUND * look.text
     each = (1.0 - _BAR) * wide / 2.0
     width = min(0.9 * each, box * float(np.ptp(edges[0]) / np.ptp(edges[1])))
     base = 1.0 - (top + 1.5 * look.text + box) / high
     pictures = [_means(dataset, *span) for span in instants(dataset).values()]
-    norm = Normalize(min(p[0].min() for p in pictures), max(p[0].max() for p in pictures))
+    both = xr.concat(pictures, "picture")
+    norm = Normalize(float(both.warm.min()), float(both.warm.max()))
     # arrows of air at rest are short: a share of the speed of molecules is the least length of the longest
-    warm = float(np.mean([picture[0].mean() for picture in pictures])) + 273.15
-    thermal = math.sqrt(BOLTZMANN * warm / DRY_AIR.molecule_mass)
-    fastest = max(_SLOWEST * thermal, *(float(np.percentile(np.hypot(p[1], p[2]), 98.0)) for p in pictures))
+    thermal = math.sqrt(BOLTZMANN * (float(both.warm.mean()) + 273.15) / DRY_AIR.molecule_mass)
+    speeds = np.hypot(both.horizontal_wind, both.upward_wind).quantile(0.98, ("height", "distance"))
+    fastest = max(_SLOWEST * thermal, float(speeds.max()))
     time = convert(dataset["elapsed_time_bnds"].values, str(dataset["elapsed_time"].attrs.get("units", "s")), "min")
     for place, ((words, span), picture) in enumerate(zip(instants(dataset).items(), pictures, strict=True)):
         left = 4.2 * look.text + place * (each - 0.6 * look.text) + 0.5 * (0.9 * each - width)
-        axes = drawing.add_axes((left / wide, base, width / wide, box / high))
-        axes.set_in_layout(False)
+        axes = drawing.add_axes((left / wide, base, width / wide, box / high), in_layout=False)
         _draw(axes, edges, picture, norm, fastest, look)
         first, last = time[span[0], 0], time[span[1] - 1, 1]
         digits = 0 if last - first >= 1.0 else 1
         axes.set_title(words, loc="left", fontsize=look.title, weight="bold", pad=3.0)
-        if place:
-            axes.set_yticklabels([])
-        else:
-            axes.set_ylabel("height (km)", fontsize=look.text)
+        axes.set_ylabel("" if place else "height (km)")
+        axes.tick_params(labelleft=not place)
         key = f"; longest arrow {fastest:.0f} m/s" if place else ""
-        when = f"{first:.{digits}f} to {last:.{digits}f} min"
-        axes.set_xlabel(f"width (km), {when}{key}", fontsize=look.text, labelpad=1.0)
-    bar_left = (4.2 * look.text + 2.0 * (each - 0.6 * look.text)) / wide
-    holder = drawing.add_axes((bar_left, base, 0.012, box / high))
-    holder.set_in_layout(False)
-    bar = drawing.colorbar(ScalarMappable(norm, _COLOURS), cax=holder)
-    bar.ax.set_title(spelled("degC"), fontsize=look.text, pad=3.0)
-    bar.locator = MaxNLocator(4)
-    bar.ax.tick_params(labelsize=look.small)
+        axes.set_xlabel(f"width (km), {first:.{digits}f} to {last:.{digits}f} min{key}", labelpad=1.0)
+    left = (4.2 * look.text + 2.0 * (each - 0.6 * look.text)) / wide
+    holder = drawing.add_axes((left, base, 0.012, box / high), in_layout=False)
+    bar = drawing.colorbar(ScalarMappable(norm, _COLOURS), cax=holder, ticks=MaxNLocator(4))
+    holder.set_title(spelled("degC"), fontsize=look.text, pad=3.0)
+    holder.tick_params(labelsize=look.small)
     bar.outline.set_visible(False)
 
 
-def _means(dataset: xr.Dataset, first: int, last: int) -> list[NDArray[np.float64]]:
-    """Return temperature [degC], wind and upward wind of each cell, as means over some frames."""
-    part = dataset.isel(elapsed_time=slice(first, last)).transpose(..., "height", "distance")
-    names = ("cell_temperature", "horizontal_wind", "upward_wind")
-    values = [np.ma.masked_invalid(part[name].values).mean(axis=0).filled(np.nan) for name in names]
-    values[0] = convert(values[0], "K", "degC")
-    return [np.where(np.isfinite(each), each, np.nanmean(each)) for each in values]
+def _means(dataset: xr.Dataset, first: int, last: int) -> xr.Dataset:
+    """Return temperature ``warm`` [degC], wind and upward wind of each cell, as means over some frames."""
+    cells = dataset[["cell_temperature", "horizontal_wind", "upward_wind"]].isel(elapsed_time=slice(first, last))
+    mean = cells.mean("elapsed_time").transpose("height", "distance")
+    return mean.fillna(mean.mean()).assign(warm=lambda each: each.cell_temperature - 273.15)
 
 
 def _draw(
-    axes: Axes, edges: list[NDArray[np.float64]], picture: list[NDArray[np.float64]], norm: Normalize,
-    fastest: float, look: Theme,
-) -> None:  # fmt: skip
+    axes: Axes, edges: list[NDArray[np.float64]], picture: xr.Dataset, norm: Normalize, fastest: float, look: Theme
+) -> None:
     """Draw the air at one instant; arrows stand for the mean of as many cells as make them few enough."""
-    warm, along, up = picture
-    axes.pcolormesh(edges[0], edges[1], warm, cmap=_COLOURS, norm=norm, rasterized=True)
-    by = math.ceil(warm.shape[1] / _ARROWS)
-    rows, columns = (size // by * by for size in warm.shape)
-    if rows and columns:
-        middle = [0.5 * (each[1:] + each[:-1]) for each in edges]
-        x, y = middle[0][:columns].reshape(-1, by).mean(axis=1), middle[1][:rows].reshape(-1, by).mean(axis=1)
-        u, w = (
-            each[:rows, :columns].reshape(rows // by, by, columns // by, by).mean(axis=(1, 3)) for each in (along, up)
-        )
+    axes.pcolormesh(*edges, picture.warm, cmap=_COLOURS, norm=norm, rasterized=True)
+    by = math.ceil(picture.sizes["distance"] / _ARROWS)
+    if picture.sizes["height"] >= by:
+        part = picture.coarsen(height=by, distance=by, boundary="trim").mean()
+        x, y = part.distance.values / 1000.0, part.height.values / 1000.0
         longest = float(x[1] - x[0]) if len(x) > 1 else float(np.ptp(edges[0]))
         axes.quiver(
-            x, y, u, w, color="white", edgecolor=DARK, linewidth=0.15 * look.line, angles="xy", scale_units="xy",
-            scale=max(fastest, 1e-30) / longest, width=0.009, pivot="middle",
+            x, y, part.horizontal_wind, part.upward_wind, color="white", edgecolor=DARK, linewidth=0.15 * look.line,
+            angles="xy", scale_units="xy", scale=max(fastest, 1e-30) / longest, width=0.009, pivot="middle",
         )  # fmt: skip
-    axes.set_xlim(edges[0][0], edges[0][-1])
-    axes.set_ylim(edges[1][0], edges[1][-1])
-    axes.xaxis.set_major_locator(MaxNLocator(4))
-    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
+    axes.locator_params("x", nbins=4)
+    axes.locator_params("y", nbins=3)
     axes.tick_params(labelsize=look.small, length=2.0)

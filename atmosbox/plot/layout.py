@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from itertools import chain
 from typing import Any, NamedTuple
 
 import xarray as xr
@@ -19,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.text import Annotation
+from matplotlib.text import Text
 from matplotlib.transforms import ScaledTranslation, offset_copy
 
 from atmosbox.plot.caption import Reading, axis_labels
@@ -79,6 +80,16 @@ class TextMeasure:
                 lines.append(word)
         return "\n".join(lines).replace(_FIXED, " ")
 
+    def write(self, words: str, left: float, down: float, **look: Any) -> Text:
+        """Write text at a distance from the left and the upper end of the page [pt], which it keeps if the page grows.
+
+        The panels make no room for it.
+        """
+        place = ScaledTranslation(left / 72.0, -down / 72.0, self.figure.dpi_scale_trans)
+        text = self.figure.text(0.0, 1.0, words, transform=self.figure.transFigure + place, **look)
+        text.set_in_layout(False)
+        return text
+
     def height(self, artist: Artist) -> float:
         """Return the height of an artist as it is drawn [pt]."""
         return float(artist.get_window_extent().height) * 72 / self.figure.dpi
@@ -110,29 +121,23 @@ def put_numbers(measure: TextMeasure, readings: Sequence[Reading], look: Theme, 
     >>> 40.0 < put_numbers(TextMeasure(drawing), [cape], THEMES["notes"], 0.0) < 60.0
     True
     """
-    figure = measure.figure
-    width = 72.0 * figure.get_figwidth() - look.text
+    width = 72.0 * measure.figure.get_figwidth() - look.text
     columns = max(1, min(len(readings), int(width / (_NARROWEST * look.text))))
     each, large, top = width / columns, _LARGE * look.title, below
-
-    def write(words: str, left: float, down: float, **look: Any) -> None:
-        # at this distance from the upper end of the page [pt], which it keeps if the page grows later
-        place = figure.transFigure + ScaledTranslation(left / 72.0, -down / 72.0, figure.dpi_scale_trans)
-        figure.text(0.0, 1.0, words, transform=place, **look).set_in_layout(False)
 
     for first in range(0, len(readings), columns):
         lowest = top
         for place, reading in enumerate(readings[first : first + columns]):
             left, base = 0.5 * look.text + place * each, top + 0.95 * large
-            write(reading.number, left, base, size=large, color=DARK, weight="bold", va="baseline")
+            measure.write(reading.number, left, base, size=large, weight="bold")
             after = left + measure.width(reading.number, large, "bold") + 0.4 * look.text
-            write(reading.error, after, base, color=DARK, va="baseline")
+            measure.write(reading.error, after, base)
             beside = ", ".join(part for part in (reading.theory, reading.difference) if part)
             base += 0.25 * large
             for words, colour in ((reading.label, DARK), (beside, FAINT)):
                 for line in measure.wrap(words, each - look.text, look.text).split("\n") if words else ():
                     base += _LEADING * look.text
-                    write(line, left, base, color=colour, va="baseline")
+                    measure.write(line, left, base, color=colour)
             lowest = max(lowest, base)
         top = lowest + 0.6 * _LEADING * look.text
     return top - below
@@ -160,8 +165,6 @@ class Graph(NamedTuple):
     """The panel that they show."""
     entries: list[Entry]
     """The entries of its legend."""
-    note: Annotation
-    """The text below its title, in which `settle` writes the panel's note."""
     labels: tuple[tuple[str, str], tuple[str, str]]
     """Label and unit of the two axes; the label of an abscissa that the panel below shows is empty."""
     row: int
@@ -172,8 +175,8 @@ _SMALLEST = 0.6  # least size of a label that is too long for its axis, in units
 
 
 def page(
-    panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[Reading],
-    small: str, heading: str, height: float = 0.0, put: Callable[[Figure, float], None] | None = None,
+    panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[list[Reading]],
+    small: str, heading: str, height: float = 0.0, put: Callable[[TextMeasure, float], None] | None = None,
 ) -> Figure:  # fmt: skip
     """Return a page of panels, with a heading and numbers in large type above them and small type below them.
 
@@ -183,14 +186,14 @@ def page(
         The run, whose variables give the labels of the axes.
     draw : callable
         The function that draws a panel, see `Draw`.
-    readings : sequence of Reading
+    readings : sequence of list of Reading
         The numbers above the panels.
     small, heading : str
         The text of the footer and of the heading; an empty heading takes no space.
     height : float
         Height that pictures above the panels take [pt].
     put : callable, optional
-        The function that draws these pictures, given the figure and their distance from its upper end [pt].
+        The function that draws these pictures, given the page and their distance from its upper end [pt].
 
     Examples
     --------
@@ -200,23 +203,22 @@ def page(
     >>> from atmosbox.scene.panels import Line
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
-    >>> drawing = page((panel,), look, dataset, painter(dataset, look), [], "atmosbox", "")
+    >>> drawing = page((panel,), look, dataset, painter([dataset], look), [], "atmosbox", "")
     >>> [text.get_text() for text in drawing.texts], drawing.axes[0].get_title("left")
     (['atmosbox'], 'Pressure')
     """
     with style(look):
-        drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
+        drawing = blank(look.wide if len(panels) > 1 or height else look.narrow, look)
         measure = TextMeasure(drawing)
-        top = put_heading(measure, heading, look)
-        above = top + put_numbers(measure, readings, look, top)
-        top = above + height
+        above = put_heading(measure, heading, 1.3 * look.title, look)
+        above += put_numbers(measure, list(chain(*readings)), look, above)
         if look.grows:
-            drawing.set_figheight(drawing.get_figheight() + top / 72)
+            drawing.set_figheight(drawing.get_figheight() + (above + height) / 72)
         graphs = put_panels(drawing, panels, look, dataset, draw) if panels else []
         put_footer(measure, small, look)
-        settle(measure, graphs, look, top)
+        settle(measure, graphs, look, above + height)
         if put is not None:
-            put(drawing, above)
+            put(measure, above)
     return drawing
 
 
@@ -268,7 +270,7 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
     >>> page = blank((4.0, 3.0), look)
-    >>> graphs = put_panels(page, (panel, panel), look, dataset, painter(dataset, look))
+    >>> graphs = put_panels(page, (panel, panel), look, dataset, painter([dataset], look))
     >>> [(graph.row, graph.column) for graph in graphs]
     [(0, 0), (0, 1)]
     """
@@ -283,17 +285,13 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
             axes, entries = draw(drawing, spot, panel, graphs[-1].axes if shared and row else None)
             x, y = axis_labels(dataset, panel)
             labels = (("", x[1]) if shared and not row else x, y)
-            note = axes.annotate(
-                "", (0.0, 1.0), (0.0, 0.0), xycoords="axes fraction", textcoords="offset points", va="top",
-                size=look.text, linespacing=1.2, annotation_clip=False,
-            )  # fmt: skip
-            graphs.append(Graph(axes, panel, entries, note, labels, row, place))
+            graphs.append(Graph(axes, panel, entries, labels, row, place))
         drawing.align_ylabels([graph.axes for graph in graphs if graph.column == place])
     return graphs
 
 
-def put_footer(measure: TextMeasure, small: str, look: Theme) -> None:
-    """Write the small type below all panels.
+def put_footer(measure: TextMeasure, small: str, look: Theme) -> float:
+    """Write the small type below all panels; return the height that it takes [pt].
 
     Parameters
     ----------
@@ -304,38 +302,37 @@ def put_footer(measure: TextMeasure, small: str, look: Theme) -> None:
     --------
     >>> from atmosbox.plot.theme import THEMES
     >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> put_footer(TextMeasure(drawing), "atmosbox", THEMES["notes"])
+    >>> _ = put_footer(TextMeasure(drawing), "atmosbox", THEMES["notes"])
     >>> [text.get_text() for text in drawing.texts]
     ['atmosbox']
     """
     width = 72 * measure.figure.get_figwidth()
     # Type that is fitted to the pixels of a screen may be narrower than in print.
     small = measure.wrap(small, 0.98 * (width - look.text), look.small)
-    measure.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
+    text = measure.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
+    return measure.height(text) + look.text
 
 
-def put_heading(measure: TextMeasure, heading: str, look: Theme) -> float:
-    """Write a heading above all panels; return the height that it takes [pt].
+def put_heading(measure: TextMeasure, heading: str, size: float, look: Theme, share: float = 1.0) -> float:
+    """Write a heading at the top of a page, over a share of its width; return the height that it takes [pt].
 
     Parameters
     ----------
     heading : str
         The text; an empty one takes no space.
+    size : float
+        The size of its type [pt].
 
     Examples
     --------
     >>> from atmosbox.plot.theme import THEMES
-    >>> put_heading(TextMeasure(blank((4.0, 3.0), THEMES["notes"])), "", THEMES["notes"])
+    >>> put_heading(TextMeasure(blank((4.0, 3.0), THEMES["notes"])), "", 12.0, THEMES["notes"])
     0.0
     """
     if not heading:
         return 0.0
-    width, height = (72 * float(size) for size in measure.figure.get_size_inches())
-    size = 1.3 * look.title
-    heading = measure.wrap(heading, width - look.text, size, "bold")
-    place = (0.5 * look.text / width, 1.0 - 0.5 * look.text / height)
-    text = measure.figure.text(*place, heading, fontsize=size, weight="bold", va="top")
-    text.set_in_layout(False)
+    heading = measure.wrap(heading, share * 72 * measure.figure.get_figwidth() - look.text, size, "bold")
+    text = measure.write(heading, look.text / 2, look.text / 2, size=size, weight="bold", va="top")
     return measure.height(text) + look.text
 
 
@@ -358,7 +355,7 @@ def settle(measure: TextMeasure, graphs: list[Graph], look: Theme, top: float = 
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),), y_label="height"), THEMES["notes"]
     >>> drawing = blank((4.0, 3.0), look)
-    >>> settle(TextMeasure(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look)), look)
+    >>> settle(TextMeasure(drawing), put_panels(drawing, (panel,), look, dataset, painter([dataset], look)), look)
     >>> drawing.axes[0].get_ylabel()
     'height'
     """
@@ -394,14 +391,12 @@ def _write_labels(measure: TextMeasure, graph: Graph, look: Theme) -> None:
     if panel.kind == "skewt":
         fit_skewt(axes, width, height, size)
     elif panel.kind != "atmosphere":  # its horizontal axis has no scale
-        log = panel.x_scale == "log"
-        power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
+        power = put_ticks(axes.xaxis, width, size, pressure=x_unit == "hPa")
     if x_label:
         axes.set_xlabel(measure.wrap(labelled(x_label, x_unit, power) if x_unit else x_label, width, size))
     else:
         axes.tick_params(axis="x", labelbottom=False)
-    log = panel.y_scale == "log"
-    power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
+    power = put_ticks(axes.yaxis, height, size, pressure=y_unit == "hPa")
     # The label may extend beyond both ends of the axis into the gaps that are there anyhow. A line that is still too
     # long is written smaller, so that it does not run into the legend.
     room = height + 0.8 * size
@@ -411,37 +406,37 @@ def _write_labels(measure: TextMeasure, graph: Graph, look: Theme) -> None:
 
 
 def _write_legend(measure: TextMeasure, graph: Graph, edge: float, look: Theme) -> float:
-    """Put the legend above the axes and break the note into lines; return the height of both together [pt]."""
-    axes, size = graph.axes, look.text
+    """Put the legend above the axes, with the note as its title; return the height of both together [pt]."""
+    axes, size, note = graph.axes, look.text, graph.panel.note
     extent, point = axes.get_window_extent(), measure.figure.dpi / 72
     room, height = (extent.x1 - edge) / point, _GAP * size
-    if len(graph.entries) > 1 or any(line.role != "data" for line in graph.panel.lines):
-        place = offset_copy(axes.transAxes, measure.figure, (edge - extent.x0) / point, height, units="points")
-        labels = [measure.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in graph.entries]
-        for number in range(len(labels), 0, -1):
-            legend = axes.legend(
-                [artists if len(artists) > 1 else artists[0] for artists, _ in graph.entries], labels,
-                loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=number, borderpad=0.0,
-                borderaxespad=0.0, handlelength=_HANDLE, handletextpad=_HANDLE_GAP, columnspacing=1.1,
-                labelspacing=0.25,
-            )  # fmt: skip
-            if legend.get_window_extent().width <= room * point:
-                break
-        for line in legend.get_lines():
-            line.set_linewidth(max(line.get_linewidth(), look.line))
-        height += measure.height(legend) + _GAP * size
-    graph.note.set_text(measure.wrap(graph.panel.note, room, size))
-    return height + (measure.height(graph.note) + _GAP * size if graph.panel.note else 0.0)
+    told = len(graph.entries) > 1 or any(line.role != "data" for line in graph.panel.lines)
+    if not told and not note:
+        return height
+    place = offset_copy(axes.transAxes, measure.figure, (edge - extent.x0) / point, height, units="points")
+    entries = graph.entries if told else []
+    labels = [measure.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in entries]
+    for number in range(max(len(labels), 1), 0, -1):
+        legend = axes.legend(
+            [artists if len(artists) > 1 else artists[0] for artists, _ in entries], labels,
+            title=measure.wrap(note, room, size) if note else None, title_fontsize=size, alignment="left",
+            loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=number, borderpad=0.0,
+            borderaxespad=0.0, handlelength=_HANDLE, handletextpad=_HANDLE_GAP, columnspacing=1.1, labelspacing=0.25,
+        )  # fmt: skip
+        if legend.get_window_extent().width <= room * point:
+            break
+    for line in legend.get_lines():
+        line.set_linewidth(max(line.get_linewidth(), look.line))
+    return height + measure.height(legend) + _GAP * size
 
 
 def _write_title(measure: TextMeasure, graph: Graph, edge: float, height: float, look: Theme) -> None:
-    """Write the title at a height above the axes [pt], and below it the note."""
+    """Write the title at a height above the axes [pt]."""
     extent, point = graph.axes.get_window_extent(), measure.figure.dpi / 72
     title = measure.wrap(graph.panel.title, (extent.x1 - edge) / point, look.title, "bold")
     left = (edge - extent.x0) / extent.width
     # With y given, matplotlib does not look for ticks that the title would have to avoid.
     graph.axes.set_title(title, loc="left", x=left, y=1.0, pad=height, fontsize=look.title, weight="bold")
-    graph.note.set_position(((edge - extent.x0) / point, height - _GAP * look.text))
 
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
@@ -460,8 +455,6 @@ def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
 
 def _same_abscissa(upper: Panel, lower: Panel) -> bool:
     """Tell whether two panels, one above the other, can share a horizontal axis."""
-    if upper.kind != "line" or lower.kind != "line":
-        return False
-    names = {line.x for panel in (upper, lower) for line in panel.lines}
+    names = {(panel.kind, line.x) for panel in (upper, lower) for line in panel.lines}
     axes = {(panel.x_label, panel.x_unit, panel.x_scale, panel.x_invert) for panel in (upper, lower)}
-    return len(names) == len(axes) == 1
+    return upper.kind == "line" and len(names) == len(axes) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -12,22 +13,13 @@ from matplotlib.gridspec import SubplotSpec
 
 from atmosbox.errors import Command, FileError, Option
 from atmosbox.file.molecules import Molecules, molecules
-from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
+from atmosbox.plot.box_picture import box_picture, instant
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve
-from atmosbox.plot.draw import Entry, draw, hollow_points
+from atmosbox.plot.discs import colour_bar
+from atmosbox.plot.draw import Curves, Entry, draw, draw_lines, hollow_points
 from atmosbox.plot.flow_picture import flow_height, put_flow
-from atmosbox.plot.layout import (
-    Draw,
-    TextMeasure,
-    blank,
-    page,
-    put_footer,
-    put_heading,
-    put_numbers,
-    put_panels,
-    settle,
-)
+from atmosbox.plot.layout import Draw, TextMeasure, page
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.theme import Theme, find, style
 from atmosbox.scene.panels import Line, Panel, from_json
@@ -75,41 +67,40 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     panels = panels_of(dataset)
     heading = str(dataset.attrs.get("title", ""))
     small = footer(dataset) + explanation(dataset, panels)
-    readings = [reading for each in headlines(dataset, panels) for reading in each]
+    readings = headlines(dataset, panels)
     height = flow_height(dataset, look)
     if height and not look.grows:  # a slide has no room for more below the pictures of the wind
         panels, readings = panels[:2], []
     put = partial(put_flow, dataset, look) if height else None
-    return page(panels, look, dataset, painter(dataset, look), readings, small, heading, height, put)
+    return page(panels, look, dataset, painter([dataset], look), readings, small, heading, height, put)
 
 
-def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = None) -> Draw:
-    """Return the function that draws a panel of a run at its place.
+def painter(runs: Sequence[xr.Dataset], look: Theme, curves: Curves | None = None) -> Draw:
+    """Return the function that draws a panel at its place.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
-    look : Theme
-        The theme: sizes of type, lines and markers.
-    only : tuple of Line, optional
-        The lines to draw; by default all.
+    runs : sequence of xarray.Dataset
+        The run, or the runs that are compared.
+    curves : callable, optional
+        The function that draws the curves of several runs.
 
     Examples
     --------
     >>> import xarray as xr
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> drawing, panel = Figure(), Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> axes, _ = painter(dataset, find("notes"))(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
+    >>> axes, _ = painter([dataset], find("notes"))(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
     >>> axes.lines[0].get_xdata().tolist()
     [1000.0, 900.0]
     """
+    several = curves or partial(draw_lines, runs[0])
 
     def draw_panel(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
         if panel.kind == "skewt":
-            return draw_skewt(drawing, spot, panel, dataset, look, only)
+            return draw_skewt(drawing, spot, panel, runs, look, several)
         axes = drawing.add_subplot(spot, sharex=above)
-        return axes, draw(axes, panel, dataset, look, only)
+        return axes, draw(axes, panel, runs, look, several)
 
     return draw_panel
 
@@ -186,26 +177,26 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
 
 def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
     """Return a panel of a run that was stopped, with the curves that it has; None if none of them is measured."""
-
-    def held(names: tuple[str, ...]) -> bool:
-        return all(name.partition("[")[0] in dataset.variables for name in names)
-
-    if not panel.lines:
-        return panel if held(panel.variables) else None
-    lines = tuple(line for line in panel.lines if held(line.variables))
-    return replace(panel, lines=lines) if any(line.role == "data" for line in lines) else None
+    lines = tuple(line for line in panel.lines if holds(dataset, line.variables))
+    if any(line.role == "data" for line in lines):
+        return replace(panel, lines=lines)
+    return panel if not panel.lines and holds(dataset, panel.variables) else None
 
 
-def _known(dataset: xr.Dataset, name: str) -> bool:
-    """Tell whether a variable has a value, or is not in the file, which `draw` tells."""
-    return name not in dataset or bool(dataset[name].notnull().any())
+def holds(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
+    """Tell whether a file has all of some variables, or the variables of which these are parts."""
+    return all(name.partition("[")[0] in dataset.variables for name in names)
 
 
 def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
-    """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
+    """Return the lines of a panel without theory that is not known.
+
+    That is the theory of a missing headline, such as a cloud base that was not found, or theory that is known nowhere,
+    such as the growth of rolls of discs.
+    """
     missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
-    # nor theory that is known nowhere, such as the growth of rolls of discs
-    missing |= {line.y for line in panel.lines if line.role == "theory" and not _known(dataset, line.y)}
+    told = [line.y for line in panel.lines if line.role == "theory" and line.y in dataset]
+    missing |= {name for name in told if not dataset[name].notnull().any()}
     return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))
 
 
@@ -248,52 +239,36 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """
     look, held = find(theme), molecules(dataset)
     panels = tuple(panel for panel in panels_of(dataset) if panel.kind != "discs")
-    readings = [reading for each in headlines(dataset, panels) for reading in each]
+    readings = headlines(dataset, panels)
     if not look.grows:  # a slide has no room for more below the boxes
         panels = panels[: 2 if all(panel.kind == "profile" for panel in panels[:2]) else 1]
     with style(look):
-        wide, high = (72.0 * size for size in look.wide)  # pt
-        boxes = _HIGH * wide if look.grows else _HIGH_ON_SCREEN * high
-        drawing = blank(look.wide, look)
-        measure = TextMeasure(drawing)
-        top = put_heading(measure, str(dataset.attrs.get("title", "")), look)
-        top += put_numbers(measure, readings, look, top)
-        if look.grows:
-            drawing.set_figheight((high + top + boxes) / 72.0)
-        each = (1.0 - _BAR) / len(_INSTANTS)
-        spots = [(place * each, 0.5, 0.96 * each, 0.1) for place in range(len(_INSTANTS))]
-        pictures = [box_picture(drawing.add_axes(spot), dataset, held, look) for spot in spots]
-        graphs = put_panels(drawing, panels, look, dataset, painter(dataset, look))
-        words = " · ".join([footer(dataset), *pictures[0].legend()])
-        put_footer(measure, words + explanation(dataset, panels), look)
-        settle(measure, graphs, look, top + boxes)
-        _put_boxes(measure, dataset, held, pictures, (top, top + boxes), look)
-    return drawing
+        legend = box_picture(Figure().add_subplot(), dataset, held, look).legend()
+    small = " · ".join([footer(dataset), *legend]) + explanation(dataset, panels)
+    height = 72.0 * (_HIGH * look.wide[0] if look.grows else _HIGH_ON_SCREEN * look.wide[1])
+    heading, put = str(dataset.attrs.get("title", "")), partial(_put_boxes, dataset, held, look, height)
+    return page(panels, look, dataset, painter([dataset], look), readings, small, heading, height, put)
 
 
 def _put_boxes(
-    measure: TextMeasure,
-    dataset: xr.Dataset,
-    held: Molecules,
-    pictures: list[BoxPicture | PlanarPicture],
-    room: tuple[float, float],
-    look: Theme,
+    dataset: xr.Dataset, held: Molecules, look: Theme, height: float, measure: TextMeasure, down: float
 ) -> None:
     """Draw the box at each instant with its time above it, and the colour bar to the right of all boxes.
 
-    ``room`` gives the distances of the upper and of the lower end of this row from the upper end of the page [pt].
+    ``down`` is the distance of this row from the upper end of the page, and ``height`` its height [pt].
     """
-    high = 72.0 * float(measure.figure.get_figheight())
-    each, top = (1.0 - _BAR) / len(pictures), 1.0 - (room[0] + 0.5 * look.text) / high
+    drawing = measure.figure
+    wide, high = (72.0 * float(size) for size in drawing.get_size_inches())
+    each = (1.0 - _BAR) / len(_INSTANTS)
     frames = [round(part * (len(held.time) - 1)) for part in _INSTANTS]
-    said = [instant(dataset, held, moment) for moment in frames]
+    said = [instant(dataset, held, frame) for frame in frames]
     lines = max(text.count("\n") for text in said) + 1
-    bottom = 1.0 - (room[1] - 2.2 * look.small) / high
-    below = top - (1.35 * lines + 0.3) * look.text / high
-    for place, (picture, moment, text) in enumerate(zip(pictures, frames, said, strict=True)):
-        left = place * each
-        measure.figure.text(left + each / 2, top, text, fontsize=look.text, ha="center", va="top").set_in_layout(False)
-        picture.axes.set_position((left + 0.05 * each, bottom, 0.9 * each, below - bottom))
-        picture.fit()
-        picture.artists(moment)
-    speed_bar(measure.figure, pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
+    bottom = 1.0 - (down + height - 2.2 * look.small) / high
+    tall = (height - 2.2 * look.small - (1.35 * lines + 0.8) * look.text) / high
+    for place, (frame, text) in enumerate(zip(frames, said, strict=True)):
+        measure.write(text, (place + 0.5) * each * wide, down + look.text / 2, ha="center", va="top")
+        axes = drawing.add_axes(((place + 0.05) * each, bottom, 0.9 * each, tall))
+        picture = box_picture(axes, dataset, held, look)
+        picture.show(frame)
+    bar = drawing.add_axes((1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * tall))
+    colour_bar(bar, picture.norm, look, counted=held.neighbours is not None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -15,15 +15,16 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.patches import Patch
 from matplotlib.text import Annotation
-from matplotlib.ticker import FixedFormatter, FixedLocator
+from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from atmosbox.errors import FileError
 from atmosbox.plot.curve import Curve, curve, read
-from atmosbox.plot.draw import Entry, draw_lines
+from atmosbox.plot.draw import Curves, Entry
 from atmosbox.plot.theme import AREAS, DARK, FAINT, PALE, Theme
 from atmosbox.plot.units import convert
-from atmosbox.scene.panels import Line, Panel
+from atmosbox.scene.panels import Panel
+
+Floats = NDArray[np.float64]
 
 ROTATION = 30.0  # angle of the isotherms from the vertical [degree], as in MetPy
 
@@ -66,15 +67,13 @@ def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
     left, across = _temperatures(axes, bottom, top, height / width)
     axes.set_xlim(left, left + across)
     step = next(step for step in (5.0, 10.0, 20.0, 50.0, 100.0) if step * width / across >= 3.2 * size)
-    coldest = left - across * math.tan(math.radians(ROTATION)) * height / width
-    isotherms = step * np.arange(math.floor(coldest / step), math.ceil((left + across) / step) + 1)
-    numbers = [f"{t:.0f}".replace("-", "−") if left <= t <= left + across else "" for t in isotherms]
-    axes.xaxis.set_major_locator(FixedLocator(list(isotherms)))
-    axes.xaxis.set_major_formatter(FixedFormatter(numbers))
+    axes.xaxis.set_major_locator(MultipleLocator(step))
     names = [text for text in axes.texts if isinstance(text, Annotation) and text.get_gid() == _LEVEL]
-    wanted = [height * math.log(bottom / text.xy[1]) / math.log(bottom / top) for text in names]
-    for text, place, moved in zip(names, wanted, _apart(wanted, 1.15 * size, height), strict=True):
-        text.set_position((0.8 * size, moved - place))
+    above = -math.inf
+    for text in names:  # from the ground up
+        place = height * math.log(bottom / text.xy[1]) / math.log(bottom / top)
+        above = max(place, above + 1.15 * size)
+        text.set_position((0.8 * size, above - place))
 
 
 def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[float, float]:
@@ -128,23 +127,6 @@ def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
             )  # fmt: skip
 
 
-def _apart(places: list[float], gap: float, height: float) -> list[float]:
-    """Return ascending positions, moved until they are at least a gap apart and none is above the height."""
-    moved = list(places)
-    for i in range(1, len(moved)):
-        moved[i] = max(moved[i], moved[i - 1] + gap)
-    ceiling = height
-    for i in reversed(range(len(moved))):
-        moved[i] = min(moved[i], ceiling)
-        ceiling = moved[i] - gap
-    return moved
-
-
-_ROUNDING = 1.0 + 1e-12  # allows for the rounding error of a pressure computed as exp(log(p))
-
-Floats = NDArray[np.float64]
-
-
 def shade_energy(
     skewed: Any, panel: Panel, dataset: xr.Dataset, marks: Mapping[str, float], order: float
 ) -> list[Entry]:
@@ -165,47 +147,37 @@ def shade_energy(
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.scene.panels import Line, Panel
+    >>> from atmosbox.scene.panels import Line
     >>> panel = Panel("skewt", "A parcel", (Line("temperature", "pressure", "parcel"),), y_unit="hPa", y_scale="log")
     >>> shade_energy(None, panel, xr.Dataset(), {}, 1.0)
     []
     """
-    measured, environment = (
-        next((line for line in panel.lines if line.role == role), None) for role in ("data", "environment")
-    )
-    if "LFC" not in marks or measured is None or environment is None:
+    roles = {line.role: line for line in reversed(panel.lines)}
+    if "LFC" not in marks or not {"data", "environment"} <= set(roles):
         return []
     lfc, el = marks["LFC"], marks.get("EL", 0.0)
-    curves = [curve(dataset, panel, line) for line in (measured, environment)]
-    pressure, parcel, around = _together(curves, [lfc, el] if el else [lfc])
-    free, below = (pressure <= lfc * _ROUNDING) & (pressure * _ROUNDING >= el), pressure * _ROUNDING >= lfc
-    warmer = parcel - around
+    curves = [curve(dataset, panel, roles[role]) for role in ("data", "environment")]
+    pressure = np.unique(np.concatenate([*(each.y[np.isfinite(each.y)] for each in curves), [lfc, el or lfc]]))[::-1]
+    parcel, around = (_temperature(each, pressure) for each in curves)
+    known = np.isfinite(parcel) & np.isfinite(around)
     entries: list[Entry] = []
     for name, part, sign, shade in (
-        ("CAPE", free, 1.0, skewed.shade_cape),
-        ("CIN", below, -1.0, skewed.shade_cin),
+        ("CAPE", known & (pressure <= lfc) & (pressure >= el), 1.0, skewed.shade_cape),
+        ("CIN", known & (pressure >= lfc), -1.0, skewed.shade_cin),
     ):
-        if not (sign * warmer[part] > 0.0).any():
-            continue
-        shade(pressure[part], around[part], parcel[part], zorder=order, **AREAS[name])
-        entries.append(((Patch(**AREAS[name]),), name))
+        if (sign * (parcel - around)[part] > 0.0).any():
+            shade(pressure[part], around[part], parcel[part], zorder=order, **AREAS[name])
+            entries.append(((Patch(**AREAS[name]),), name))
     return entries
 
 
-def _together(curves: list[Curve], ends: list[float]) -> tuple[Floats, Floats, Floats]:
-    """Return pressures from the ground up, which include the ends of the areas, and both curves' temperatures there."""
-    columns = []
-    for temperature, pressure, _ in curves:
-        known = np.isfinite(temperature) & np.isfinite(pressure)
-        order = np.argsort(-pressure[known], kind="stable")
-        columns.append((-np.log(pressure[known][order]), temperature[known][order]))
-    if not all(height.size for height, _ in columns):
-        return np.zeros(0), np.zeros(0), np.zeros(0)
-    low, high = max(height[0] for height, _ in columns), min(height[-1] for height, _ in columns)
-    heights = np.unique(np.concatenate([*(height for height, _ in columns), -np.log(ends)]))
-    heights = heights[(heights >= low) & (heights <= high)]
-    temperatures = [np.interp(heights, *each) for each in columns]
-    return np.exp(-heights), temperatures[0], temperatures[1]
+def _temperature(one: Curve, pressure: Floats) -> Floats:
+    """Return the temperature of a curve at some pressures, NaN beyond its ends."""
+    known = np.isfinite(one.x) & np.isfinite(one.y)
+    if not known.any():
+        return np.full_like(pressure, np.nan)
+    height, order = -np.log(one.y[known]), np.argsort(-one.y[known], kind="stable")
+    return np.interp(-np.log(pressure), height[order], one.x[known][order], left=np.nan, right=np.nan)
 
 
 BACKGROUND = "grey: dry adiabats (solid), moist adiabats (dashed), mixing ratios (dotted)"
@@ -241,7 +213,7 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
     Raises
     ------
     FileError
-        If a mark is not a single number, or not a pressure.
+        If a mark is not a pressure.
 
     Examples
     --------
@@ -258,38 +230,21 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
         if name not in dataset.variables or not dataset[name].attrs.get("resolved", True):
             continue
         variable = read(dataset, name)
-        if variable.ndim:
-            raise FileError(f"The variable {name!r} of the file is a list, and a mark is a single number.")
-        unit = str(variable.attrs.get("units", "1"))
-        pressure = float(convert(variable.values, unit, panel.y_unit, name=name))
-        if math.isfinite(pressure) and pressure > 0.0:
+        pressure = float(convert(variable.values, str(variable.attrs.get("units", "1")), panel.y_unit, name=name))
+        if pressure > 0.0:
             found.setdefault(_ABBREVIATIONS.get(name, name.replace("_", " ")), pressure)
     return found
 
 
 def draw_skewt(
-    figure: Figure,
-    spot: SubplotSpec,
-    panel: Panel,
-    dataset: xr.Dataset,
-    theme: Theme,
-    only: tuple[Line, ...] | None = None,
+    figure: Figure, spot: SubplotSpec, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, curves: Curves
 ) -> tuple[Axes, list[Entry]]:
-    """Draw a parcel and its environment as a skew-T, with CAPE and CIN shaded.
-
-    Parameters
-    ----------
-    spot : matplotlib.gridspec.SubplotSpec
-        The place of the panel in it.
-    panel : Panel
-        A panel of the kind ``skewt``.
-    only : tuple of Line, optional
-        The lines to draw; by default all.
+    """Draw parcels and their environment as a skew-T; CAPE and CIN are shaded for one run alone.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes. `tilt.fit_skewt` sets their range of temperatures later.
+        The axes. `fit_skewt` sets their range of temperatures later.
     list of tuple
         The entries of the legend.
 
@@ -306,49 +261,22 @@ def draw_skewt(
 
     Examples
     --------
-    >>> import numpy as np, xarray as xr
+    >>> import xarray as xr
+    >>> from functools import partial
+    >>> from atmosbox.plot.draw import draw_lines
     >>> from atmosbox.scene.panels import Line
     >>> from atmosbox.plot.theme import THEMES
     >>> held = {
     ...     "t": ("level", np.array([300.0, 280.0, 250.0]), {"units": "K"}),
     ...     "p": ("level", np.array([1000e2, 700e2, 400e2]), {"units": "Pa"}),
     ... }
-    >>> figure = Figure()
-    >>> spot = figure.add_gridspec(1, 1)[0, 0]
-    >>> panel = Panel("skewt", "Air", (Line("t", "p", "air"),))
-    >>> axes, entries = draw_skewt(figure, spot, panel, xr.Dataset(held), THEMES["notes"])
-    >>> axes.get_yscale(), [label for _, label in entries]
-    ('log', ['air'])
+    >>> figure, dataset = Figure(), xr.Dataset(held)
+    >>> spot, panel = figure.add_gridspec(1, 1)[0, 0], Panel("skewt", "Air", (Line("t", "p", "air"),))
+    >>> axes, entries = draw_skewt(figure, spot, panel, [dataset], THEMES["notes"], partial(draw_lines, dataset))
+    >>> axes.get_yscale(), [round(float(limit)) for limit in axes.get_ylim()], [label for _, label in entries]
+    ('log', [1018, 393], ['air'])
     """
-    marks = levels(dataset, panel)
-    skewed, axes = skewed_axes(figure, spot)
-    entries, _ = draw_lines(axes, panel, dataset, slender(theme), only)
-    put_background(skewed, axes, theme)
-    put_levels(axes, marks, theme)
-    return axes, entries + shade_energy(skewed, panel, dataset, marks, SHADE_ORDER)
-
-
-def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
-    """Return an empty skew-T and its axes.
-
-    Parameters
-    ----------
-    spot : matplotlib.gridspec.SubplotSpec
-        The place in it.
-
-    Returns
-    -------
-    metpy.plots.SkewT
-        The diagram.
-    matplotlib.axes.Axes
-        Its axes.
-
-    Examples
-    --------
-    >>> figure = Figure()
-    >>> skewed_axes(figure, figure.add_gridspec(1, 1)[0, 0])[1].get_yscale()
-    'log'
-    """
+    marks, *others = (levels(run, panel) for run in runs)
     with warnings.catch_warnings(action="ignore"):  # a user can do nothing about warnings of MetPy in a new Python
         from metpy.plots import SkewT
 
@@ -358,27 +286,17 @@ def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
     axes.grid(visible=True)
     axes.spines[:].set_visible(True)
     axes.tick_params(top=False)
-    return skewed, axes
+    entries, _ = curves(axes, panel, slender(theme))
+    put_background(skewed, axes, theme)
+    if all(each.keys() == marks.keys() and np.allclose([*each.values()], [*marks.values()]) for each in others):
+        put_levels(axes, marks, theme)
+    if not others:
+        entries += shade_energy(skewed, panel, runs[0], marks, SHADE_ORDER)
+    return axes, entries
 
 
 def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
-    """Set the range of pressures of a skew-T from its curves, and draw the background lines.
-
-    Parameters
-    ----------
-    skewed : metpy.plots.SkewT
-        The diagram, with its curves.
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> figure = Figure()
-    >>> skewed, axes = skewed_axes(figure, figure.add_gridspec(1, 1)[0, 0])
-    >>> _ = axes.plot([20.0, -60.0], [1000.0, 250.0])
-    >>> put_background(skewed, axes, THEMES["notes"])
-    >>> [round(float(limit)) for limit in axes.get_ylim()]
-    [1028, 243]
-    """
+    """Set the range of pressures of a skew-T from its curves, and draw the background lines."""
     bottom, top = _pressures(axes)
     axes.set_ylim(bottom, top)
     with warnings.catch_warnings(action="ignore"):
@@ -389,12 +307,9 @@ def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
 
         look = {"colors": PALE, "alpha": 1.0, "linewidths": theme.line / 2.4, "zorder": 0.5}
         skewed.plot_dry_adiabats(units.Quantity(_DRY + 273.15, "K"), between(top), linestyles="solid", **look)
-        if bottom > _HIGHEST_MOIST:
-            dashes, start = (0.0, (6.0, 3.0)), units.Quantity(_MOIST, "degC")
-            skewed.plot_moist_adiabats(start, between(_HIGHEST_MOIST), linestyles=[dashes], **look)
-        if bottom > _MIXING_TOP:
-            dots = (0.0, (1.0, 2.5))
-            skewed.plot_mixing_lines(_MIXING / 1e3, between(_MIXING_TOP), linestyles=[dots], **look)
+        moist, dashes, dots = units.Quantity(_MOIST, "degC"), (0.0, (6.0, 3.0)), (0.0, (1.0, 2.5))
+        skewed.plot_moist_adiabats(moist, between(_HIGHEST_MOIST), linestyles=[dashes], **look)
+        skewed.plot_mixing_lines(_MIXING / 1e3, between(_MIXING_TOP), linestyles=[dots], **look)
 
 
 def slender(theme: Theme) -> Theme:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.plot.caption import stated
-from atmosbox.plot.coexistence_figure import draw_coexistence, is_coexistence
+from atmosbox.plot.coexistence_figure import coexistence, is_coexistence
 from atmosbox.plot.run_figure import figure as figure_of_panels
 from atmosbox.plot.theme import DATA_COLOURS, find, style
 from atmosbox.plot.units import convert, spelled
@@ -52,29 +52,25 @@ class _Setting(NamedTuple):
     @property
     def geometric(self) -> bool:
         """Whether it needs a logarithmic axis: positive values with very uneven steps over a wide range."""
-        if not self.numeric or len(self.values) < 3 or not self.values[0] > 0.0:
+        if len(self.values) < 3 or not self.values[0] > 0.0:
             return False
         steps = np.diff(self.values)
         return bool(steps.max() > _UNEVEN * steps.min() and self.values[-1] > _UNEVEN * self.values[0])
 
 
 def _setting(dataset: xr.Dataset, dim: str) -> _Setting:
-    """Return a setting; the unit of the file is shown if it names no other into which it can be converted."""
+    """Return a setting that was varied, from its coordinate."""
     found, name = dataset[dim], dim.removesuffix("_setting").replace("_", " ")
     if found.dtype.kind not in "fi":
         words = [str(word) for word in np.char.decode(found.values.astype("S"))]
         return _Setting(dim, name, name, False, np.arange(len(words), dtype=float), "1", "1", words)
     unit = str(found.attrs.get("units", "1"))
     shown = str(found.attrs.get("display_units", "")) or unit
-    try:
-        values = convert(found.values, unit, shown, name=dim)
-    except FileError:
-        shown, values = unit, np.asarray(found.values, dtype=np.float64)
-    with_unit = "" if shown == "1" else f" {spelled(shown)}"
-    words = [f"{value:.6g}".replace("-", "−") + with_unit for value in values]
+    values = convert(found.values, unit, shown, name=dim)
+    words = [f"{value:.6g} {spelled(shown)}".replace("-", "−").rstrip() for value in values]
     label = str(found.attrs.get("long_name", ""))
     label = label if 0 < len(label) <= _LONGEST else name
-    return _Setting(dim, name, label, True, np.asarray(found.values, dtype=np.float64), unit, shown, words)
+    return _Setting(dim, name, label, True, found.values.astype(np.float64), unit, shown, words)
 
 
 def is_sweep(dataset: xr.Dataset) -> bool:
@@ -85,10 +81,7 @@ def is_sweep(dataset: xr.Dataset) -> bool:
     >>> is_sweep(xr.Dataset())
     False
     """
-    try:
-        return "sweep" in stated(dataset, "atmosbox_parameters", dict)
-    except FileError:
-        return False
+    return "sweep" in stated(dataset, "atmosbox_parameters", dict)
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
@@ -139,25 +132,21 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
             "sweep over two of them, or draw parts of the file yourself."
         )
     dataset = dataset.swap_dims({dim: name for dim, name in about["dimensions"].items() if dim != name})
-    if missing := [dim for dim in dims if dim not in dataset.sizes]:
-        raise FileError(f"The file lacks {missing[0]}, the setting that varies: type the sweep again.")
     names = [str(name) for name in about["headlines"] if name in dataset and np.isfinite(dataset[name].values).any()]
     if not names:
         raise FileError("The file has nothing to draw: no run of this sweep has measured anything; see member_reason.")
-    names.sort(key=lambda name: _theory(dataset, name) is None)
+    names.sort(key=lambda name: not _has_theory(dataset, name))
     # on the horizontal axis: a numeric setting if there is any, and of these the one with the most values
     dims.sort(key=lambda dim: (dataset[dim].dtype.kind in "fi", dataset.sizes[dim]), reverse=True)
-    members = int(about["members"])
+    runs = "one run" if about["members"] == 1 else f"mean of {about['members']} runs"
     if dims == ["temperature"] and is_coexistence(dataset, names):
-        return draw_coexistence(dataset, members, look)
+        return figure_of_panels(coexistence(dataset, runs), theme)
     if len(dims) > 1:
         shown = np.linspace(0, dataset.sizes[dims[1]] - 1, min(_MOST_CURVES, dataset.sizes[dims[1]]))
         dataset = dataset.isel({dims[1]: shown.round().astype(int)})
     settings = [_setting(dataset, dim) for dim in dims]
     across = settings[0]
-    flat, made = _panels(
-        dataset, names[:MOST_PANELS], settings, "one run" if members == 1 else f"mean of {members} runs"
-    )
+    flat, made = _panels(dataset, names[:MOST_PANELS], settings, runs)
     drawing = figure_of_panels(flat.assign_attrs(atmosbox_panels=to_json(made)), theme)
     if not across.numeric:
         with style(look):
@@ -168,12 +157,9 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     return drawing
 
 
-def _theory(dataset: xr.Dataset, name: str) -> Floats | None:
-    """Return the theory of a headline in SI units; None where there is none, or only zero."""
-    if f"{name}_theory" not in dataset:
-        return None
-    answer = np.asarray(dataset[f"{name}_theory"].values, dtype=np.float64)
-    return answer if np.any(np.nan_to_num(answer)) else None
+def _has_theory(dataset: xr.Dataset, name: str) -> bool:
+    """Tell whether a headline has a theory that is not zero everywhere."""
+    return f"{name}_theory" in dataset and bool(np.nan_to_num(dataset[f"{name}_theory"].values).any())
 
 
 def _panels(

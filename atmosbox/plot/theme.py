@@ -23,16 +23,13 @@ DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _SKY, _GREEN, _ORANGE)
 DATA_MARKERS = ("o", "s", "^", "D", "v", "P")
 # Dashes of the measured curves of one run where runs are compared: there the colour tells which run it is.
 DATA_DASHES = ("solid", (0.0, (1.0, 1.0)), (0.0, (4.0, 1.0, 1.0, 1.0)))
-THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
-_THEORY_DASHES = ((0.0, (5.0, 2.0)), (0.0, (1.2, 1.2)), (0.0, (9.0, 2.0, 2.0, 2.0, 2.0, 2.0)))
-ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)
-_ENVIRONMENT_DASHES = ((0.0, (7.0, 2.0, 1.5, 2.0)), (0.0, (1.5, 1.5)))
 # A reference curve lies under the others: where curves coincide, dashed ones on top let it be seen.
 REFERENCE_COLOURS = (_ORANGE, _SKY)
+_THEORY_DASHES = ((0.0, (5.0, 2.0)), (0.0, (1.2, 1.2)), (0.0, (9.0, 2.0, 2.0, 2.0, 2.0, 2.0)))
 CURVES: dict[str, tuple[tuple[str, ...], tuple[Any, ...], float]] = {
     "data": (DATA_COLOURS, ("solid",), 1.6),
-    "theory": (THEORY_COLOURS, _THEORY_DASHES, 0.8),
-    "environment": (ENVIRONMENT_COLOURS, _ENVIRONMENT_DASHES, 1.0),
+    "theory": ((DARK, "#5a5a5a", "#808080"), _THEORY_DASHES, 0.8),
+    "environment": ((_GREEN, _PURPLE), ((0.0, (7.0, 2.0, 1.5, 2.0)), (0.0, (1.5, 1.5))), 1.0),
     "reference": (REFERENCE_COLOURS, ("solid",), 1.7),
 }
 """Colours and dashes of the curves of each role, and their width in units of the theme's."""
@@ -137,31 +134,16 @@ def style(theme: Theme) -> AbstractContextManager[None]:
     True
     """
     settings: dict[str, Any] = {
-        "font.size": theme.text,
-        "axes.titlesize": theme.title,
-        "axes.labelsize": theme.text,
-        "legend.fontsize": theme.text,
-        "legend.frameon": False,
-        "axes.linewidth": theme.line / 2,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.edgecolor": FAINT,
-        "axes.labelcolor": DARK,
-        "text.color": DARK,
-        "lines.linewidth": theme.line,
-        "lines.markersize": theme.marker,
-        "lines.solid_capstyle": "butt",
-        "grid.color": "#d9d9d9",
-        "grid.linewidth": theme.line / 3,
-        "hatch.linewidth": theme.line / 3,
-        "axes.axisbelow": True,
-        "axes.formatter.useoffset": False,
-        "axes.formatter.limits": (-9, 9),
+        "font.size": theme.text, "axes.titlesize": theme.title, "axes.labelsize": theme.text,
+        "legend.fontsize": theme.text, "legend.frameon": False,
+        "axes.linewidth": theme.line / 2, "axes.spines.top": False, "axes.spines.right": False,
+        "axes.edgecolor": FAINT, "axes.labelcolor": DARK, "axes.axisbelow": True, "text.color": DARK,
+        "lines.linewidth": theme.line, "lines.markersize": theme.marker, "lines.solid_capstyle": "butt",
+        "grid.color": "#d9d9d9", "grid.linewidth": theme.line / 3, "hatch.linewidth": theme.line / 3,
+        "axes.formatter.useoffset": False, "axes.formatter.limits": (-9, 9),
         "figure.dpi": theme.dots_per_inch,
-        "svg.hashsalt": "atmosbox",
-        "svg.fonttype": "path",
-        "pdf.fonttype": 42,
-    }
+        "svg.hashsalt": "atmosbox", "svg.fonttype": "path", "pdf.fonttype": 42,
+    }  # fmt: skip
     for axis in ("xtick", "ytick"):
         settings |= {f"{axis}.labelsize": theme.text, f"{axis}.color": FAINT, f"{axis}.labelcolor": DARK}
         settings |= {f"{axis}.minor.size": 0.15 * theme.text, f"{axis}.major.size": 0.35 * theme.text}

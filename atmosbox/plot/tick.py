@@ -9,7 +9,6 @@ from matplotlib.axis import Axis, XAxis
 from matplotlib.ticker import (
     FixedLocator,
     FuncFormatter,
-    Locator,
     LogLocator,
     MaxNLocator,
     NullFormatter,
@@ -22,23 +21,19 @@ from atmosbox.plot.units import power_of_ten
 _PRESSURE_LEVELS = (1000.0, 850.0, 700.0, 500.0, 400.0, 300.0, 250.0, 200.0, 150.0, 100.0, 70.0, 50.0, 30.0, 20.0, 10.0)
 # The leading digits of the ticks of a logarithmic axis, and the least ratio between two such ticks; the densest first.
 _DIGITS = (((1.0, 2.0, 5.0), 2.0), ((1.0, 3.0), 3.0), ((1.0,), 10.0))
-# The room that a number takes along a horizontal and along a vertical axis, the width of a digit, and the gap between
-# two numbers on a horizontal axis, all in units of the type size.
-_ACROSS, _UPRIGHT, _DIGIT, _BETWEEN = 3.0, 1.5, 0.64, 0.7
+_NUMBER = 3.8  # room for a number and its gap along a horizontal axis, in units of the type size
 # If the upper end of a logarithmic axis is at least this many times its lower end, its numbers are written as powers of
 # ten, and no common power goes into the label. Just below 1000, so that rounding does not decide.
 _MANY = 999.0
 
 
-def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bool = False) -> int:
+def put_ticks(axis: Axis, length: float, size: float, *, pressure: bool = False) -> int:
     """Put as many numbers on an axis as there is room for, and return the power of ten by which they were divided.
 
     Parameters
     ----------
     axis : matplotlib.axis.Axis
         The axis, with its limits set.
-    log : bool
-        Whether the axis is logarithmic.
     length, size : float
         Length of the axis and size of its type [pt].
     pressure : bool
@@ -56,47 +51,39 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
 
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot(ylim=(-3e-15, 2e-15))
-    >>> put_ticks(axes.yaxis, log=False, length=100.0, size=8.0)
+    >>> put_ticks(axes.yaxis, 100.0, 8.0)
     -15
     """
     low, high = sorted(map(float, axis.get_view_interval()))
     across = isinstance(axis, XAxis)
-    if log:
-        plain = low >= 5e-4 and high < 1e5
-        power = 0 if plain or high >= _MANY * low else math.floor(math.log10(low))
-        locator = _log_locator(low, high, (_ACROSS if across else _UPRIGHT) * size / length, pressure=pressure)
-        axis.set_minor_locator(LogLocator(subs=range(1, 10)))
-        axis.set_minor_formatter(NullFormatter())
-        axis.set_major_formatter(FuncFormatter(lambda value, _: _written(value, power, plain=plain)))
-    else:
-        largest, locator = max(abs(low), abs(high)), None
-        power = 0 if largest == 0.0 or 1e-2 <= largest < 1e5 else math.floor(math.log10(largest))
+    most = int(length / ((_NUMBER if across else 2.0) * size))
+    steps = MaxNLocator(min(max(most, 2), 7), steps=[1, 2, 2.5, 5, 10])
+    if axis.get_scale() != "log":
         formatter = ScalarFormatter(useOffset=False)
+        largest = max(abs(low), abs(high))
+        power = 0 if largest == 0.0 or 1e-2 <= largest < 1e5 else math.floor(math.log10(largest))
         formatter.set_powerlimits((power, power) if power else (-9, 9))
+        axis.set_major_locator(steps)
         axis.set_major_formatter(formatter)
         axis.offsetText.set_visible(False)
-    if locator is not None:
-        axis.set_major_locator(locator)
         return power
-    for intervals in range(7, 1, -1):
-        axis.set_major_locator(MaxNLocator(intervals, steps=[1, 2, 2.5, 5, 10]))
-        ticks = axis.get_majorticklocs().tolist()
-        longest = max(map(len, axis.get_major_formatter().format_ticks(ticks)))
-        wide = (_DIGIT * longest + _BETWEEN) * size if across else _UPRIGHT * size
-        if wide * (high - low) <= length * (ticks[1] - ticks[0]):
-            break
-    return power
-
-
-def _log_locator(low: float, high: float, room: float, *, pressure: bool) -> Locator | None:
-    """Return the locator of the ticks of a logarithmic axis; None where the axis is too short for round numbers."""
-    decades = math.log10(high / low)
+    plain = low >= 5e-4 and high < 1e5
+    power = 0 if plain or high >= _MANY * low else math.floor(math.log10(low))
+    axis.set_minor_locator(LogLocator(subs=range(1, 10)))
+    axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _written(value, power, plain=plain)))
+    # in decades: the room that a number takes, and the least distance between two mandatory levels
+    room = (3.0 if across else 1.5) * size / length * math.log10(high / low)
     levels = [level for level in _PRESSURE_LEVELS if low <= level <= high]
     closest = min((math.log10(lower / upper) for lower, upper in pairwise(levels)), default=0.0)
-    if pressure and len(levels) > 3 and high < 1100.0 and closest >= 0.8 * room * decades:
-        return FixedLocator(levels)
-    digits = next((each for each, ratio in _DIGITS if math.log10(ratio) >= room * decades), (1.0,))
-    return LogLocator(subs=digits) if high > 4.0 * low else None
+    if pressure and len(levels) > 3 and high < 1100.0 and closest >= 0.8 * room:
+        axis.set_major_locator(FixedLocator(levels))
+    elif high > 4.0 * low:
+        digits = next((each for each, ratio in _DIGITS if math.log10(ratio) >= room), (1.0,))
+        axis.set_major_locator(LogLocator(subs=digits))
+    else:
+        axis.set_major_locator(steps)
+    return power
 
 
 def _written(value: float, power: int, *, plain: bool) -> str:

@@ -53,12 +53,11 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         If there is no such theme.
     """
     look = find(theme)
-    name = _telling(dataset)
-    one = dataset.sel(quantity=name)
-    share, unit = (1.0, "K") if str(one.unit.item()) == "K" else (100.0, "%")
-    allowed, said = share * limit(str(one.unit.item())), str(one.label.item())
-    error = share * _total(dataset)[:, [str(each) for each in dataset.quantity.values].index(name)]
-    chance = np.hypot(one.noise.values, one.bias_se.values) > np.abs(one.bias.values)
+    look = replace(look, narrow=look.wide)
+    place = _telling(dataset)
+    one = dataset.isel(quantity=place)
+    said, share, unit = str(one.label.item()), *((1.0, "K") if str(one.unit.item()) == "K" else (100.0, "%"))
+    allowed, error = share * limit(str(one.unit.item())), share * _total(dataset)[:, place]
     panel = Panel(
         "line",
         f"{said[:1].upper()}{said[1:]}: what a single run is off by",
@@ -67,16 +66,14 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     )
 
     def draw(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        axes = drawing.add_subplot(spot, sharex=above)
-        axes.set(xscale=panel.x_scale, yscale=panel.y_scale)
-        entries = _draw_runs(axes, dataset, error, chance, look)
-        best, seconds = recommended(dataset), dataset.engine_seconds.values
-        if best is not None:
+        axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
+        entries = _draw_runs(axes, dataset, error, np.hypot(one.noise, one.bias_se) > np.abs(one.bias), look)
+        if best := recommended(dataset):
             k, enough = best
+            seconds, head = float(dataset.engine_seconds[k]), "recommended" if enough else "the most accurate"
             ring: dict[str, Any] = {"mfc": "none", "mec": DARK, "mew": 1.2 * look.line, "ms": 2.8 * look.marker}
-            head = "recommended" if enough else "the most accurate"
-            label = f"{head}: {error[k]:.2g} {unit} in {seconds[k]:.2g} s by {_way(dataset, k)}"
-            entries.insert(0, ((axes.plot(seconds[k], error[k], "o", zorder=4, **ring)[0],), label))
+            label = f"{head}: {error[k]:.2g} {unit} in {seconds:.2g} s by {_way(dataset, k)}"
+            entries.insert(0, ((axes.plot(seconds, error[k], "o", zorder=4, **ring)[0],), label))
         low, high = axes.get_ylim()
         axes.set_ylim(0.7 * min(low, allowed), 1.4 * max(high, allowed))
         axes.axhspan(axes.get_ylim()[0], allowed, color=AGREES, alpha=0.10, lw=0.0, zorder=0)
@@ -88,39 +85,33 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         f"green: within {allowed:g} {unit} · recommended: the cheapest run within {WANTED.limits} in all its numbers "
         f"(--accuracy {WANTED.text})"
     )
-    look = replace(look, narrow=look.wide)
     return page((panel,), look, dataset, draw, [], small, str(dataset.attrs.get("title", "")))
 
 
 def _draw_runs(
-    axes: Axes, dataset: xr.Dataset, error: NDArray[np.float64], chance: NDArray[np.bool_], look: Theme
+    axes: Axes, dataset: xr.Dataset, error: NDArray[np.float64], chance: xr.DataArray, look: Theme
 ) -> list[Entry]:
     """Draw the errors of each series of runs, hollow where most of them is chance; return the legend entries."""
-    seconds = dataset.engine_seconds.values
+    seconds, values, hollow = dataset.engine_seconds.values, dataset.value.values, np.asarray(chance)
     known = np.isfinite(seconds) & np.isfinite(error)
-    engines = list(dict.fromkeys(str(text).partition(":")[0] for text in dataset.engine.values))
+    engines = [str(text).partition(":")[0] for text in dataset.engine.values]
     entries: list[Entry] = []
     for row in sorted({int(k) for k in dataset.series.values[known]}):
-        here = (dataset.series.values == row) & known
-        engine = str(dataset.engine.values[here][0]).partition(":")[0]
-        colour, marker = DATA_COLOURS[engines.index(engine) % len(DATA_COLOURS)], _MARKERS[row % len(_MARKERS)]
-        along = np.flatnonzero(here)[np.argsort(seconds[here])]
-        axes.plot(seconds[along], error[along], lw=0.7 * look.line, alpha=0.6, zorder=2, color=colour)
+        along = np.flatnonzero((dataset.series.values == row) & known)
+        along = along[np.argsort(seconds[along])]
+        engine, about = engines[along[0]], _rows(dataset)[row]
+        colour = DATA_COLOURS[list(dict.fromkeys(engines)).index(engine) % len(DATA_COLOURS)]
         looks: dict[str, Any] = {"mec": colour, "mew": 0.8 * look.line, "ms": 1.7 * look.marker, "zorder": 3}
-        for face, those in ((colour, here & ~chance), ("white", here & chance)):
-            axes.plot(seconds[those], error[those], marker, mfc=face, **looks)
-        shown = Line2D([], [], color=colour, marker=marker, mfc="white" if chance[along].all() else colour, **looks)
-        entries.append(((shown,), f"{engine}: {_series(dataset, row, along)}"))
+        looks["marker"] = _MARKERS[row % len(_MARKERS)]
+        axes.plot(seconds[along], error[along], lw=0.7 * look.line, alpha=0.6, zorder=2, color=colour)
+        for face, those in ((colour, along[~hollow[along]]), ("white", along[hollow[along]])):
+            axes.plot(seconds[those], error[those], ls="none", mfc=face, **looks)
+        shown = Line2D([], [], color=colour, mfc="white" if hollow[along].all() else colour, **looks)
+        # the varied setting with its range in these runs, and the settings of all of them
+        ends = " to ".join(dict.fromkeys(f"{value:g}" for value in values[along[[0, -1]]] if np.isfinite(value)))
+        words = [f"{engine}: {about['vary']} {ends}", *_in_words(about["settings"])]
+        entries.append(((shown,), ", ".join(words)))
     return entries
-
-
-def _series(dataset: xr.Dataset, row: int, along: NDArray[np.int64]) -> str:
-    """Return the varied setting of a series with its range in the runs ``along``, and the settings of all its runs."""
-    rows = _rows(dataset)
-    about: dict[str, Any] = rows[row] if row < len(rows) else {"vary": "settings", "settings": {}}
-    values = dataset.value.values[along[[0, -1]]]
-    ends = " to ".join(dict.fromkeys(f"{value:g}" for value in values if np.isfinite(value)))
-    return ", ".join([f"{about['vary']} {ends}", *_in_words(about["settings"])])
 
 
 def _way(dataset: xr.Dataset, k: int) -> str:
@@ -144,31 +135,31 @@ def _rows(dataset: xr.Dataset) -> list[dict[str, Any]]:
     return rows
 
 
+def _lawful(dataset: xr.Dataset) -> list[bool]:
+    """Tell which quantities have a law of bias."""
+    lawful = {name for row in _rows(dataset) for name in row["order"]}
+    return [str(name) in lawful for name in dataset.quantity.values]
+
+
 def foremost(dataset: xr.Dataset) -> list[str]:
     """Return the quantities to show, at most four: those with a law first, otherwise in the order of the file."""
-    lawful = {name for row in _rows(dataset) for name in row["order"]}
-    names = [str(name) for name in dataset.quantity.values]
-    return sorted(names, key=lambda name: name not in lawful)[:4]
+    order = np.argsort(np.logical_not(_lawful(dataset)), kind="stable")
+    return [str(name) for name in dataset.quantity.values[order][:4]]
 
 
-def _telling(dataset: xr.Dataset) -> str:
-    """Return the quantity that best shows how the ways of running differ: the one in which most of them have a bias.
+def _telling(dataset: xr.Dataset) -> int:
+    """Return the place of the quantity that best shows how the ways differ: the one in which most of them have a bias.
 
     Numbers come before curves, and then quantities with a law of bias before those without.
     """
-    lawful = {name for row in _rows(dataset) for name in row["order"]}
-
-    def rank(name: str) -> tuple[bool, bool, int]:
-        one = dataset.sel(quantity=name)
-        seen = int((np.abs(one.bias.values) > SEEN * one.bias_se.values).sum())
-        return not _is_curve(one), name in lawful, seen
-
-    return max((str(name) for name in dataset.quantity.values), key=rank)
+    biased = (np.abs(dataset.bias) > SEEN * dataset.bias_se).sum("rung").values
+    ranks = list(zip(~_are_curves(dataset), _lawful(dataset), biased, strict=True))
+    return ranks.index(max(ranks))
 
 
-def _is_curve(one: xr.Dataset) -> bool:
-    """Tell whether a quantity is a curve; its error is a mean along the curve."""
-    return str(one.label.item()).startswith("profile of ")
+def _are_curves(dataset: xr.Dataset) -> NDArray[np.bool_]:
+    """Tell which quantities are curves; the error of such a one is a mean along the curve."""
+    return np.array([str(label).startswith("profile of ") for label in dataset.label.values])
 
 
 def _total(dataset: xr.Dataset) -> NDArray[np.float64]:
@@ -198,7 +189,7 @@ def recommended(dataset: xr.Dataset) -> tuple[int, bool] | None:
     of running the same experiment count: a series with a switch of its own, such as discs in a plane, is another
     experiment. None if no way has known errors and a known cost.
     """
-    numbers = np.array([not _is_curve(dataset.sel(quantity=name)) for name in dataset.quantity.values])
+    numbers = ~_are_curves(dataset)
     allowed = np.array([limit(str(unit)) for unit in dataset.unit.values])
     worst = (_total(dataset) / allowed)[:, numbers].max(axis=1, initial=0.0)
     own = [row["settings"].values() for row in _rows(dataset)]

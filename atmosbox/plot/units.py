@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.scene.conversion import known_unit
+from atmosbox.scene.conversion import known_unit, power_of_ten, spelled
 
-_SIGNS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_SPELLINGS = {"degC": "°C", "um": "µm", "us": "µs", "percent": "%"}
+__all__ = ["convert", "labelled", "of_difference", "power_of_ten", "spelled"]
 
 
 def convert(
@@ -83,32 +82,6 @@ def of_difference(unit: str) -> str:
     return "K" if unit == "degC" else unit
 
 
-def spelled(unit: str, power: int = 0) -> str:
-    """Return a unit as it is printed, with a power of ten before it if there is one.
-
-    Parameters
-    ----------
-    unit : str
-        The unit as files write it, "m s-1" for instance.
-    power : int
-        Exponent of the power of ten by which the numbers in this unit must be multiplied; 0 for none.
-
-    Returns
-    -------
-    str
-        The unit, its exponents as superscripts.
-
-    Examples
-    --------
-    >>> spelled("m s-1"), spelled("degC"), spelled("1", power=-15)
-    ('m s⁻¹', '°C', '10⁻¹⁵')
-    """
-    words = [_SPELLINGS.get(word) or _raised(word) for word in unit.split()]
-    if power:
-        words = [power_of_ten(power), *(word for word in words if word != "1")]
-    return " ".join(words)
-
-
 def labelled(label: str, unit: str, power: int = 0) -> str:
     """Return the label of an axis: the quantity and, unless it is a pure number, its unit in brackets.
 
@@ -127,30 +100,3 @@ def labelled(label: str, unit: str, power: int = 0) -> str:
     ('speed (m s⁻¹)', 'molecules', 'molecules (10⁶)')
     """
     return label if unit == "1" and not power else f"{label} ({spelled(unit, power)})"
-
-
-def power_of_ten(power: int) -> str:
-    """Return a power of ten as it is printed.
-
-    Parameters
-    ----------
-    power : int
-        The exponent.
-
-    Returns
-    -------
-    str
-        The power, its exponent as a superscript.
-
-    Examples
-    --------
-    >>> power_of_ten(25)
-    '10²⁵'
-    """
-    return "10" + str(power).translate(_SIGNS)
-
-
-def _raised(word: str) -> str:
-    """Return one factor of a unit; its exponent, if there is one, as a superscript."""
-    base = word.rstrip("-0123456789")
-    return base + word[len(base) :].translate(_SIGNS) if base else word

@@ -26,7 +26,9 @@ __all__ = [
     "known_unit",
     "number_and_unit",
     "phrase",
+    "power_of_ten",
     "slashed",
+    "spelled",
     "to_si",
     "typed",
 ]
@@ -98,6 +100,36 @@ def slashed(unit: str) -> str:
     """
     typed = re.sub(r" ([A-Za-z]+)-(\d+)", lambda match: f"/{match[1]}{match[2].removeprefix('1')}", unit)
     return typed.replace(" ", "*")
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PRINTED = {"degC": "°C", "um": "µm", "us": "µs", "percent": "%"}
+
+
+def power_of_ten(power: int) -> str:
+    """Return a power of ten as it is printed, its exponent as a superscript.
+
+    Examples
+    --------
+    >>> power_of_ten(25)
+    '10²⁵'
+    """
+    return "10" + str(power).translate(_RAISED)
+
+
+def spelled(unit: str, power: int = 0) -> str:
+    """Return a unit as it is printed, empty for a pure number; with a power of ten before it unless that is 0.
+
+    Examples
+    --------
+    >>> spelled("m s-1"), spelled("degC"), spelled("1"), spelled("1", power=-15)
+    ('m s⁻¹', '°C', '', '10⁻¹⁵')
+    """
+    factors = [word for word in unit.split() if word != "1"]
+    words = [
+        re.sub(r"-?\d+$", lambda digits: digits[0].translate(_RAISED), _PRINTED.get(each, each)) for each in factors
+    ]
+    return " ".join([power_of_ten(power), *words] if power else words)
 
 
 _UNITS |= {slashed(name): unit for name, unit in _UNITS.items()}

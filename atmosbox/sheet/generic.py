@@ -70,9 +70,11 @@ class AnyScene:
             case "both" if found:
                 return " and ".join(measured(x.n, x.s) for x in made[found[0].name]) + " with the two seeds."
             case "misfits":
-                numbers = [(label, a) for label, a, *_ in known if a.theory is not None]
-                return "; ".join(f"{label}: {abs(a.n - a.theory) / a.s:.1f}" for label, a in numbers)
+                far = [f"{label}: {abs(a.n - a.theory) / a.s:.1f}" for label, a, *_ in known if a.theory is not None]
+                return f"Difference in standard errors: {'; '.join(far)}." if far else ""
             case "differences":
                 apart = [(label, b[0] - a) for label, a, *b in known if b]
-                return "; ".join(f"{label}: {measured(x.n, x.s)}" for label, x in apart)
+                said = "; ".join(f"{label}: {measured(x.n, x.s)}" for label, x in apart)
+                chance = "Chance exceeds 4 standard errors of such a difference about once in 3 500 times."
+                return f"B minus A: {said}. {chance}" if said else ""
         return "result" if name == "quantity" else ""

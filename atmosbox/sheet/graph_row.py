@@ -19,7 +19,6 @@ __all__ = ["graph_rows", "until"]
 _TIME = "elapsed_time"
 _FRAMES = 20
 """Number of last frames over which a value is averaged, the same as for the gauges of a page."""
-_FIGURES = 3  # significant digits
 
 
 def until(prepared: Prepared) -> str:
@@ -59,17 +58,13 @@ def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
         for line in panel.lines if panel.kind in ("line", "profile", "histogram") else ():
             if line.role != "data" or known(line.y) is None:
                 continue
-            unit = spelled((panel.y_unit if panel.kind != "profile" else panel.x_unit) or _si_unit(panel, line))
+            name, shown = (line.x, panel.x_unit) if panel.kind == "profile" else (line.y, panel.y_unit)
+            unit = spelled(shown or variable(name).units or "1")
             curve = f"{line.label}{_where(panel, line)}{f' [{unit}]' if unit else ''}"
             theory = _theory(panel, line)
             lines = [_line(run, panel, line, theory) for run in runs]
             found.append({"graph": panel.title, "curve": curve, "lines": lines})
     return found
-
-
-def _si_unit(panel: Panel, line: Line) -> str:
-    unit = variable(line.x if panel.kind == "profile" else line.y).units
-    return "" if unit == "1" else unit or ""
 
 
 def _where(panel: Panel, line: Line) -> str:
@@ -97,15 +92,13 @@ def _theory(panel: Panel, line: Line) -> str | None:
 def _line(run: Trial, panel: Panel, line: Line, theory: str | None) -> tuple[str, str, str, str]:
     """Return the line of a run for a curve: letter, measured value, theory, difference."""
     blank = "" if theory else "–"
-    if run.outcome is None:
-        return run.letter, "", blank, blank
-    measured = _last(run, panel, line.y) if panel.kind == "line" and line.x == _TIME else None
-    told = _last(run, panel, theory) if theory and measured is not None else None
+    in_time = panel.kind == "line" and line.x == _TIME
+    measured, told = (_last(run, panel, name) if in_time and name else None for name in (line.y, theory))
     if measured is None:
-        return run.letter, "see the graph", blank, blank
+        return run.letter, "see the graph" if run.outcome else "", blank, blank
     if told is None:
-        return run.letter, bare(measured, _FIGURES), "–", "–"
-    return run.letter, bare(measured, _FIGURES), bare(told, _FIGURES), bare(measured - told, 2)
+        return run.letter, bare(measured), "–", "–"
+    return run.letter, bare(measured), bare(told), bare(measured - told, 2)
 
 
 def _last(run: Trial, panel: Panel, name: str) -> float | None:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 from markdown_it.renderer import RendererHTML
+from markdown_it.token import Token
 
-from atmosbox.sheet.marks import PARSER
+from atmosbox.sheet.marks import PARSER, blocks
 from atmosbox.sheet.worksheet import Worksheet
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from markdown_it.token import Token
 
 __all__ = ["html"]
 
@@ -51,7 +48,7 @@ def html(sheet: Worksheet) -> str:
     1
     """
     title = escape(sheet.title + (": answers" if sheet.answers else ""))
-    body = "".join(_blocks(PARSER.parse(sheet.text), ticked=sheet.answers))
+    body = "".join(_elements(sheet.text, ticked=sheet.answers))
     return (
         f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{title}</title>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
@@ -59,32 +56,28 @@ def html(sheet: Worksheet) -> str:
     )
 
 
-def _blocks(tokens: Sequence[Token], *, ticked: bool) -> list[str]:
+def _elements(text: str, *, ticked: bool) -> list[str]:
     """Return the elements of the page, one for each block of the Markdown."""
     made: list[str] = []
-    starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
-    question, lines = "", 0
-    for first, after in zip(starts, [*starts[1:], len(tokens)], strict=True):
-        block, inside = tokens[first], [token for token in tokens[first:after] if token.type == "inline"]
-        if block.type == "hr":  # a line to write on: those of a question become one field
-            lines += 1
-            if after == len(tokens) or tokens[after].type != "hr":
-                name = f"your answer to question {question}"
-                made.append(f'<textarea rows="{lines}" aria-label="{name}"></textarea>\n')
-                lines = 0
+    question = ""
+    for kind, run in itertools.groupby(blocks(text), lambda block: block.kind):
+        several = list(run)
+        if kind == "hr":  # lines to write on: those of a question become one field
+            name = f"your answer to question {question}"
+            made.append(f'<textarea rows="{len(several)}" aria-label="{name}"></textarea>\n')
             continue
-        numbered = re.match(r"\*\*(\d+)\.\*\*", inside[0].content) if inside else None
-        question = numbered[1] if numbered else question
-        if block.type == "table_open":
-            made.append(_table([_inline(token) for token in inside]))
-        elif block.type == "bullet_list_open":
-            made.append(_choices([_inline(token) for token in inside], question, ticked=ticked))
-        elif block.type == "fence" and block.info == "axes":
-            y, *_, x = block.content.splitlines()
-            made.append(_axes(x.partition("> ")[2], y.strip()))
-        else:
-            text = PARSER.renderer.render(tokens[first:after], PARSER.options, {})
-            made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', text))
+        for block in several:
+            numbered = re.match(r"\*\*(\d+)\.\*\*", block.inside[0].content) if block.inside else None
+            question = numbered[1] if numbered else question
+            if kind == "table_open":
+                made.append(_table([_inline(token) for token in block.inside]))
+            elif kind == "bullet_list_open":
+                made.append(_choices([_inline(token) for token in block.inside], question, ticked=ticked))
+            elif kind == "axes":
+                made.append(_axes(*map(escape, block.axes)))
+            else:
+                text = PARSER.renderer.render(block.tokens, PARSER.options, {})
+                made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', text))
     return made
 
 
@@ -123,7 +116,6 @@ def _table(cells: Sequence[str]) -> str:
 
 def _axes(x: str, y: str) -> str:
     """Return empty axes to draw into, with a description."""
-    x, y = escape(x), escape(y)
     return (
         f'<svg role="img" aria-label="Empty axes for a sketch: horizontally {x}, vertically {y}" viewBox="0 0 480 170">'
         '<path d="M20 20V145H440" fill="none" stroke="#111" stroke-width="1.5"/>'

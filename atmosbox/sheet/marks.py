@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 from xml.sax.saxutils import escape, quoteattr
 
 from markdown_it import MarkdownIt
+from markdown_it.token import Token
 
 from atmosbox.errors import ConfigError, shown
 
-if TYPE_CHECKING:
-    from markdown_it.token import Token
-
-__all__ = ["PARSER", "TYPED", "as_paragraph", "check"]
+__all__ = ["PARSER", "TYPED", "Block", "as_paragraph", "blocks", "check"]
 
 PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 TYPED = "DejaVuSansMono"
@@ -52,6 +51,41 @@ def check(text: str) -> None:
         if block.type != "paragraph_open":
             kind = block.type.removesuffix("_open").replace("_", " ")
             raise ConfigError(f"{shown(text)} begins as a {kind} of Markdown does: begin it with a word")
+
+
+class Block(NamedTuple):
+    """A block of Markdown: a heading, a paragraph, a list, a table, a line to write on."""
+
+    kind: str
+    """The type of its first token, or "axes" for empty axes to draw into."""
+    tag: str
+    tokens: Sequence[Token]
+    inside: list[Token]
+    """The lines of text in it."""
+
+    @property
+    def axes(self) -> tuple[str, str]:
+        """The labels of empty axes, horizontal and vertical."""
+        y, *_, x = self.tokens[0].content.splitlines()
+        return x.partition("> ")[2], y.strip()
+
+
+def blocks(text: str) -> list[Block]:
+    """Return the blocks of a Markdown text.
+
+    Examples
+    --------
+    >>> [block.kind for block in blocks("# Goal" + chr(10) + "Air rises.")]
+    ['heading_open', 'paragraph_open']
+    """
+    tokens = PARSER.parse(text)
+    starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
+    found = []
+    for first, after in itertools.pairwise([*starts, len(tokens)]):
+        here, inside = tokens[first], [token for token in tokens[first:after] if token.type == "inline"]
+        kind = "axes" if here.type == "fence" and here.info == "axes" else here.type
+        found.append(Block(kind, here.tag, tokens[first:after], inside))
+    return found
 
 
 def as_paragraph(tokens: Sequence[Token], size: float) -> str:

@@ -7,23 +7,9 @@ import re
 
 from uncertainties import ufloat
 
+from atmosbox.scene.conversion import power_of_ten, spelled
+
 __all__ = ["bare", "fixed", "measured", "spelled", "theoretical"]
-
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_UNITS = {"degC": "°C", "percent": "%", "um": "µm", "us": "µs"}
-
-
-def spelled(unit: str) -> str:
-    """Return a unit as it is printed; empty for a pure number.
-
-    Examples
-    --------
-    >>> spelled("degC"), spelled("m s-1"), spelled("1")
-    ('°C', 'm s⁻¹', '')
-    """
-    power = re.compile(r"-?\d+$")
-    words = (_UNITS.get(word) or power.sub(lambda n: n[0].translate(_RAISED), word) for word in unit.split())
-    return "" if unit == "1" else " ".join(words)
 
 
 def _easy(size: float) -> bool:
@@ -43,7 +29,7 @@ def bare(value: float, figures: int = 3) -> str:
         return "–"
     mantissa, power = f"{value:.{figures - 1}e}".split("e")
     if not _easy(abs(value)):
-        return f"{mantissa}·10{str(int(power)).translate(_RAISED)}".replace("-", "−")
+        return f"{mantissa}·{power_of_ten(int(power))}".replace("-", "−")
     return f"{value:.{max(figures - 1 - int(power), 0) if value else 0}f}".replace("-", "−")
 
 

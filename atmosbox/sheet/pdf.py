@@ -7,17 +7,20 @@ import io
 import itertools
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from atmosbox.errors import FileError, Option, SettingError, either
-from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph
+from markdown_it.token import Token
+from reportlab.graphics.shapes import Drawing, Line, PolyLine, String
+from reportlab.lib.colors import Color
+from reportlab.lib.styles import ParagraphStyle as Style
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.ttfonts import TTFont
+from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, SimpleDocTemplate, Spacer, Table
+
+from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph, blocks
 from atmosbox.sheet.worksheet import Worksheet
 
-if TYPE_CHECKING:
-    from markdown_it.token import Token
-    from reportlab.platypus import Flowable
-
-__all__ = ["PAPERS", "Printed", "check_paper", "load_fonts", "pdf"]
+__all__ = ["PAPERS", "Printed", "load_fonts", "pdf"]
 
 MM = 72.0 / 25.4
 PAPERS = {"a4": (210.0 * MM, 297.0 * MM), "letter": (612.0, 792.0)}
@@ -51,24 +54,6 @@ class Printed(NamedTuple):
     """The number of its pages."""
 
 
-def check_paper(paper: str) -> None:
-    """Refuse a paper that is unknown.
-
-    Raises
-    ------
-    SettingError
-        If the paper is unknown.
-
-    Examples
-    --------
-    >>> check_paper("a5")
-    Traceback (most recent call last):
-    atmosbox.errors.SettingError: paper = a5 is unknown: give paper="a4" or paper="letter".
-    """
-    if paper not in PAPERS:
-        raise SettingError("paper", paper, "is unknown", *either("paper", ("a4", "letter")))
-
-
 def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     """Return a sheet as PDF.
 
@@ -84,13 +69,6 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     Printed
         The bytes, and the number of pages.
 
-    Raises
-    ------
-    SettingError
-        If the paper is unknown.
-    FileError
-        If reportlab is not installed.
-
     Notes
     -----
     The fonts are embedded, so that every character is shown on every computer and can be searched for. The file
@@ -102,7 +80,6 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     >>> pdf(worksheet("lifting-dry")).pages
     2
     """
-    check_paper(paper)
     load_fonts()
     for room in ROOM:
         printed = _laid_out(sheet, paper, room, MOST_PAGES)
@@ -115,24 +92,12 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
 def load_fonts() -> None:
     """Register the fonts that come with matplotlib.
 
-    Raises
-    ------
-    FileError
-        If reportlab is not installed.
-
     Examples
     --------
     >>> load_fonts()
-    >>> from reportlab.pdfbase import pdfmetrics
     >>> pdfmetrics.stringWidth("±", BODY, 10.0) > 0.0
     True
     """
-    try:
-        from reportlab.pdfbase import pdfmetrics
-        from reportlab.pdfbase.ttfonts import TTFont
-    except ImportError as error:
-        md = Option("format", "md")
-        raise FileError("A sheet as PDF needs reportlab", "type pip install reportlab, or give ", md) from error
     import matplotlib
 
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
@@ -143,8 +108,6 @@ def load_fonts() -> None:
 
 def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
     """Return a sheet with a factor on the usual room to write; the foot of each page gives the number of pages."""
-    from reportlab.platypus import SimpleDocTemplate
-
     width, height = PAPERS[paper]
     stream = io.BytesIO()
     title = sheet.title + (" Answers" if sheet.answers else "")
@@ -179,8 +142,6 @@ class _Layout:
     """
 
     def __init__(self, width: float, room: float) -> None:
-        from reportlab.lib.styles import ParagraphStyle as Style
-
         self.width, self.room = width, room
         self.body = Style("body", fontName=BODY, fontSize=9.0, leading=11.9, spaceAfter=3.0)
         self.heading = Style("heading", self.body, fontName=BOLD, fontSize=10.5, leading=13.0, spaceBefore=7.0)
@@ -194,8 +155,6 @@ class _Layout:
 
     def line(self, token: Token, style: Any) -> Flowable:
         """Return a line of text in a style."""
-        from reportlab.platypus import Paragraph
-
         return Paragraph(as_paragraph(token.children or (), style.fontSize), style)
 
     def marked(self, text: str, style: Any) -> Flowable:
@@ -206,14 +165,10 @@ class _Layout:
         self, rows: Sequence[Sequence[Any]], widths: Sequence[float], style: Sequence[Any], **more: Any
     ) -> Flowable:
         """Return a table; the widths of its columns are shares of the width of the text."""
-        from reportlab.platypus import Table
-
         return Table(rows, colWidths=[share * self.width for share in widths], style=style, **more)
 
     def story(self, sheet: Worksheet, title: str) -> list[Flowable]:
         """Return the elements of the whole sheet; headings and paragraphs that begin in bold stay with the next one."""
-        from reportlab.platypus import KeepTogether, Spacer
-
         name, share = (
             ("for the lecturer", 0.8) if sheet.answers else ("Name: ___________________   Date: __________", 0.62)
         )
@@ -226,28 +181,24 @@ class _Layout:
         about = self.marked(f"`{'' if sheet.lab else 'atmosbox run '}{sheet.scene}` · {sheet.about}", self.small)
         parts: list[list[Flowable]] = []
         headed = False
-        for kind, flowable in self.blocks(PARSER.parse(sheet.text)):
+        for kind, flowable in self.blocks(sheet.text):
             if kind == "heading" or (kind == "begin" and not headed) or not parts:
                 parts.append([])
             headed = kind == "heading"
             parts[-1].append(flowable)
         return [head, Spacer(1.0, 3.0), about, *map(KeepTogether, parts)]
 
-    def blocks(self, tokens: Sequence[Token]) -> Iterator[tuple[str, Flowable]]:
+    def blocks(self, text: str) -> Iterator[tuple[str, Flowable]]:
         """Yield the elements after the head of the sheet, each with its kind.
 
         A "heading", the "begin" of a part that stays on one page, or "on" for an element that continues a part.
         """
-        from reportlab.platypus import HRFlowable
-
-        starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
-        small, headed, pitch = False, False, self.room * WRITING
-        for first, after in itertools.pairwise([*starts, len(tokens)]):
-            block, inside = tokens[first], [token for token in tokens[first:after] if token.type == "inline"]
-            headed = headed or (block.type == "heading_open" and block.tag == "h2")
-            match block.type:
-                case _ if not headed:
-                    continue
+        small, pitch = False, self.room * WRITING
+        whole = blocks(text)
+        begins = next(place for place, block in enumerate(whole) if (block.kind, block.tag) == ("heading_open", "h2"))
+        for block in whole[begins:]:
+            inside = block.inside
+            match block.kind:
                 case "heading_open":
                     small = inside[0].content == "Measure"
                     yield "heading", self.line(inside[0], self.heading)
@@ -258,11 +209,10 @@ class _Layout:
                     yield "on", self.barred(inside)
                 case "bullet_list_open":
                     yield "on", self.choices([token.content for token in inside])
-                case "fence" if block.info == "axes":
-                    y, *_, x = block.content.splitlines()
-                    yield "on", self.axes(x.partition("> ")[2], y.strip())
+                case "axes":
+                    yield "on", self.axes(*block.axes)
                 case "fence":
-                    yield "on", self.marked(f"`{block.content.strip()}`", self.typed)
+                    yield "on", self.marked(f"`{block.tokens[0].content.strip()}`", self.typed)
                 case "hr":
                     yield "on", HRFlowable("100%", 0.4, color=(GREY,) * 3, spaceBefore=pitch, spaceAfter=4.0)
                 case "table_open":
@@ -287,8 +237,6 @@ class _Layout:
 
     def measurements(self, cells: Sequence[Token]) -> Flowable:
         """Return the table; a formula is below its quantity, and the lines of one quantity stay together."""
-        from reportlab.platypus import Paragraph
-
         texts = [as_paragraph(cell.children or (), self.cell.fontSize) for cell in cells]
         (what, below_it, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
         headed = "quantity, with its formula" if what == "quantity" else f"{what}, and which {below_it}"
@@ -313,25 +261,14 @@ class _Layout:
 
     def axes(self, x: str, y: str) -> Flowable:
         """Return empty axes with a pale grid."""
-        from reportlab.graphics.shapes import Drawing, Line, PolyLine, String
-        from reportlab.lib.colors import Color
-
         drawing = Drawing(self.width, self.room * AXES)
         left, right, low, high = 14.0, 0.72 * self.width, 14.0, self.room * AXES - 14.0
         pale = {"strokeWidth": 0.3, "strokeColor": Color(0.85, 0.85, 0.85)}
         for part in range(1, 9):
-            at = left + part * (right - left) / 8.0
+            at, up = left + part * (right - left) / 8.0, low + part * (high - low) / 8.0
             drawing.add(Line(at, low, at, high, **pale))
-        for part in range(1, 5):
-            at = low + part * (high - low) / 4.0
-            drawing.add(Line(left, at, right, at, **pale))
-        end, top = right + 8.0, high + 6.0
-        for line in (
-            (left, top, left, low, end, low),
-            (end - 4.0, low + 2.0, end, low, end - 4.0, low - 2.0),
-            (left - 2.0, top - 4.0, left, top, left + 2.0, top - 4.0),
-        ):
-            drawing.add(PolyLine(line, strokeWidth=0.9))
+            drawing.add(Line(left, up, right, up, **pale))
+        drawing.add(PolyLine((left, high + 6.0, left, low, right + 8.0, low), strokeWidth=0.9))
         drawing.add(String(left + 6.0, high + 3.0, y, fontName=BODY, fontSize=7.6))
         drawing.add(String(right + 8.0, low - 10.0, x, fontName=BODY, fontSize=7.6, textAnchor="end"))
         return drawing

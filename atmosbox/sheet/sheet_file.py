@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from atmosbox.errors import SettingError, either
 from atmosbox.file.output_path import named, write_whole
 from atmosbox.sheet.html import html
-from atmosbox.sheet.pdf import check_paper, load_fonts, pdf
+from atmosbox.sheet.pdf import PAPERS, pdf
 from atmosbox.sheet.worksheet import Worksheet
 
 __all__ = ["FORMATS", "check", "save"]
@@ -37,7 +38,7 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
     Raises
     ------
     FileError
-        If the file exists, its folder does not, or reportlab, which writes PDF, is not installed.
+        If the file exists, or its folder does not.
     SettingError
         If the format or the paper is unknown.
 
@@ -47,10 +48,9 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
     Traceback (most recent call last):
     atmosbox.errors.SettingError: format = docx is unknown: give a file name or format of pdf, html or md.
     """
-    path, kind = named(path, format, FORMATS, force=force, what="sheet")
-    check_paper(paper)
-    if kind == "pdf":
-        load_fonts()
+    path, _ = named(path, format, FORMATS, force=force, what="sheet")
+    if paper not in PAPERS:
+        raise SettingError("paper", paper, "is unknown", *either("paper", tuple(PAPERS)))
     return path
 
 
@@ -79,7 +79,7 @@ def save(
     Raises
     ------
     FileError
-        If the file exists already or cannot be written, or reportlab is not installed.
+        If the file exists already or cannot be written.
     SettingError
         If the format or the paper is unknown.
 
@@ -91,12 +91,7 @@ def save(
     atmosbox.errors.FileError: The folder no does not exist: type mkdir -p no first.
     """
     path = check(path, format, paper=paper, force=force)
-    match path.suffix.lower():
-        case ".pdf":
-            content = pdf(sheet, paper).content
-        case ".html":
-            content = html(sheet).encode("utf-8")
-        case _:
-            content = sheet.text.encode("utf-8")
-    write_whole(path, content)
+    kind = path.suffix.lower()
+    text = html(sheet) if kind == ".html" else sheet.text
+    write_whole(path, pdf(sheet, paper).content if kind == ".pdf" else text.encode("utf-8"))
     return path

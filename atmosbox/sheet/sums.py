@@ -1,22 +1,20 @@
-"""The sums in the texts of a sheet: ``{{ B.mean_temperature - A.mean_temperature }}``, worked out by Jinja.
+"""The sums in the texts of a sheet: ``{{ B.mean_temperature - A.mean_temperature }}``.
 
-The file of a sheet is data and runs no code. It may use only expressions of Jinja's language, no loops and no macros.
-An expression may contain the runs, the functions below and the parts of a number, but no attribute, method or filter
-of Python. The package ``uncertainties`` propagates standard errors through a sum.
+The file of a sheet is data and runs no code. A sum is read as an expression of Python, of which only numbers, texts,
+``+ - * / **``, brackets, the runs, the functions below and the parts of a number are allowed. The package
+``uncertainties`` propagates standard errors through a sum.
 """
 
 from __future__ import annotations
 
-import functools
+import ast
 import math
-from collections.abc import Mapping
+import operator
+import re
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol, runtime_checkable
 
-import jinja2
 import numpy as np
-from jinja2 import nodes
-from jinja2.exceptions import SecurityError
-from jinja2.sandbox import SandboxedEnvironment
 from uncertainties import UFloat, Variable, nominal_value, std_dev, umath
 
 from atmosbox.errors import ConfigError, shown
@@ -63,23 +61,23 @@ class Measured(Variable):  # type: ignore[misc]
         self.theory = theory
 
 
+_PARTS: dict[str, Callable[[Any], Any]] = {
+    "value": lambda number: float(nominal_value(number)),
+    "error": lambda number: float(std_dev(number)),
+    "theory": lambda number: number.theory,
+    "misfit": lambda number: number - number.theory,
+    "sigmas": lambda number: abs(number.n - number.theory) / number.s if number.s > 0.0 else math.inf,
+}
+"""The parts of a number; "sigmas" is its misfit in standard errors."""
+
+
 def _part(number: Any, name: str) -> Any:
-    """Return a part of a number: value, error, theory, misfit, or sigmas (the misfit in standard errors)."""
-    theory = getattr(number, "theory", None)
-    if name in ("theory", "misfit", "sigmas") and theory is None:
+    """Return a part of a number."""
+    if name not in _PARTS:
+        raise ConfigError(f"a number has no {shown(name)}: give one of {', '.join(_PARTS)}")
+    if name not in ("value", "error") and getattr(number, "theory", None) is None:
         raise ConfigError(f"there is no theory of a number whose {name} is asked for: leave it out")
-    match name:
-        case "value":
-            return float(nominal_value(number))
-        case "error":
-            return float(std_dev(number))
-        case "theory":
-            return theory
-        case "misfit":
-            return number - theory
-        case "sigmas":
-            return abs(number.n - theory) / number.s if number.s > 0.0 else math.inf
-    raise ConfigError(f"a number has no {shown(name)}: give one of value, error, theory, misfit, sigmas")
+    return _PARTS[name](number)
 
 
 def _late(series: Any) -> np.ndarray:
@@ -103,8 +101,7 @@ def _at(level: float, along: Any, series: Any) -> float:
     return float(np.interp(level, np.asarray(along)[order], np.asarray(series)[order]))
 
 
-_FUNCTIONS = {
-    "pi": math.pi,
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": lambda number: -number if nominal_value(number) < 0.0 else number,
     "sqrt": umath.sqrt,
     "exp": umath.exp,
@@ -120,33 +117,38 @@ _FUNCTIONS = {
     "at": _at,
     "word": lambda number, above, below: above if nominal_value(number) > 0.0 else below,
 }
-_ALLOWED = (
-    nodes.Template, nodes.Output, nodes.TemplateData, nodes.Const, nodes.Name, nodes.Getattr, nodes.Call,
-    nodes.Add, nodes.Sub, nodes.Mul, nodes.Div, nodes.Pow, nodes.Neg, nodes.Concat, nodes.CondExpr,
-)  # fmt: skip
-"""The parts of Jinja's language that a text may contain: no statements, and nothing that could run for long."""
-_NUMBERS = (bool, int, float, UFloat, np.ndarray)
+_OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: lambda base, power: (base * 1.0) ** power,  # so that no power of integers fills the memory
+    ast.USub: operator.neg,
+}
+_SUM = re.compile(r"\{\{(.*?)\}\}")
 
 
-class _Sandbox(SandboxedEnvironment):
-    """Jinja's sandbox, in which only the facts of a run and the parts of a number are attributes."""
-
-    intercepted_binops = frozenset(SandboxedEnvironment.default_binop_table)
-
-    def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:
-        """Work out a sum of numbers; powers in floating point, so that no power of integers fills the memory."""
-        if not (isinstance(left, _NUMBERS) and isinstance(right, _NUMBERS)):
-            raise SecurityError(f"{operator} stands between things that are not numbers")
-        return super().call_binop(context, operator, left * 1.0 if operator == "**" else left, right)
-
-    def getattr(self, obj: Any, attribute: str) -> Any:
-        """Return a fact of a run, or a part of a number."""
-        if isinstance(obj, Facts):
-            return obj.fact(attribute)
-        if isinstance(obj, UFloat | float):
-            return _part(obj, attribute)
-        name = getattr(obj, "_undefined_name", None)
-        raise SecurityError(f"{name} is no run" if name else f"{attribute} is no fact of a run and no part of a number")
+def _value(node: ast.AST, names: Mapping[str, Facts]) -> Any:
+    """Return the value of a sum, or of a part of it."""
+    match node:
+        case ast.Constant(value=int() | float() | str() as value):
+            return value
+        case ast.Name(id="pi"):
+            return math.pi
+        case ast.Name(id=name) if name in names:
+            return names[name]
+        case ast.Attribute(value=whole, attr=name):
+            found = _value(whole, names)
+            return found.fact(name) if isinstance(found, Facts) else _part(found, name)
+        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
+            return _FUNCTIONS[name](*(_value(each, names) for each in arguments))
+        case ast.BinOp(op=sign, left=ast.AST() as left, right=ast.AST() as right):
+            sides = [_value(each, names) for each in (left, right)]
+            if all(isinstance(each, int | float | UFloat | np.ndarray) for each in sides):
+                return _OPERATORS[type(sign)](*sides)
+        case ast.UnaryOp(op=sign, operand=operand):
+            return _OPERATORS[type(sign)](_value(operand, names))
+    raise ConfigError(f"{ast.unparse(node)} is no run, no function and no sum of numbers: correct it")
 
 
 def _printed(result: Any) -> str:
@@ -171,44 +173,27 @@ def _typed(result: Any) -> str:
     return f"{result:.12g}" if isinstance(result, float) else str(result)
 
 
-_TEXTS = _Sandbox(undefined=jinja2.StrictUndefined, finalize=_printed, autoescape=False)
-_TEXTS.globals, _TEXTS.filters, _TEXTS.tests = dict(_FUNCTIONS), {}, {}
-_SETTINGS = _TEXTS.overlay(finalize=_typed)
-
-
-def _syntax(text: str) -> None:
-    """Refuse a text that contains more than words and sums, or is too long for a sheet."""
-    if len(text) > LONGEST:
-        raise SecurityError(f"a text of more than {LONGEST} characters")
-    for node in _TEXTS.parse(text).find_all(nodes.Node):
-        if not isinstance(node, _ALLOWED):
-            raise SecurityError(f"a {type(node).__name__.lower()} is more than a sum")
-
-
-@functools.lru_cache(1000)
-def _compiled(text: str, setting: bool) -> jinja2.Template:
-    """Return a text whose sums can be worked out; its sums are compiled once, before and after the runs."""
-    _syntax(text)
-    return (_SETTINGS if setting else _TEXTS).from_string(text)
-
-
-def check(text: str) -> None:
-    """Refuse a text whose sums cannot be parsed or are more than sums; no sum is worked out.
+def check(text: str) -> list[str | ast.expr]:
+    """Return the pieces of a text, words and sums in turn; no sum is worked out.
 
     Raises
     ------
     ConfigError
-        If a brace is not closed, or the text contains a loop, a macro or a filter.
+        If a sum cannot be parsed, a brace is not closed, or the text contains a loop.
 
     Examples
     --------
     >>> check("{% for i in (1, 2) %}again{% endfor %}")
     Traceback (most recent call last):
-    atmosbox.errors.ConfigError: its sums cannot be understood (a for is more than a sum): write sums as {{ 2 * 3 }}
+    atmosbox.errors.ConfigError: its sums cannot be understood (a brace that is not closed, a statement, or more than \
+4000 characters): write sums as {{ 2 * 3 }}
     """
+    pieces = _SUM.split(text)
     try:
-        _syntax(text)
-    except (jinja2.TemplateError, RecursionError) as error:
+        if len(text) > LONGEST or any("{{" in words or "{%" in words for words in pieces[::2]):
+            raise SyntaxError(f"a brace that is not closed, a statement, or more than {LONGEST} characters")
+        return [ast.parse(each.strip(), mode="eval").body if n % 2 else each for n, each in enumerate(pieces)]
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise ConfigError(f"its sums cannot be understood ({error}): write sums as {{{{ 2 * 3 }}}}") from error
 
 
@@ -241,9 +226,10 @@ def filled(text: str, names: Mapping[str, Facts], *, setting: bool = False) -> s
     >>> filled("{{ A.temperature }} °C, noise {{ round(298 * sqrt(2 / (3 * A.molecules)), 1) }} K", {"A": Box()})
     '25.80 ± 0.90 °C, noise 8.6 K'
     """
+    written = _typed if setting else _printed
     try:
-        return _compiled(text, setting).render(names)
-    except ConfigError:
-        raise
-    except (jinja2.TemplateError, ArithmeticError, ValueError, TypeError, LookupError, RecursionError) as error:
+        return "".join(each if isinstance(each, str) else written(_value(each, names)) for each in check(text))
+    except (ArithmeticError, ValueError, TypeError, LookupError, RecursionError) as error:
+        if isinstance(error, ConfigError):
+            raise
         raise ConfigError(f"a sum cannot be worked out ({error}): correct {shown(text, 200)}") from error

@@ -21,12 +21,9 @@ from atmosbox.sheet import marks, sums
 __all__ = ["SECTIONS", "Change", "read", "text_of"]
 
 SUFFIX = ".sheet.toml"
+MOST_CHANGES = 3
 SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}
 """The headings of the groups of questions, by their names in the file."""
-
-
-Reader = Callable[[Any, str], Any]
-"""Returns an entry of the file, checked, from what was written and the place where it stands."""
 
 
 class Change(NamedTuple):
@@ -49,106 +46,77 @@ def _text(found: Any, place: str) -> str:
     return text
 
 
-def _needed(found: Any, place: str) -> str:
-    text = _text(found, place)
-    if not text:
-        raise ConfigError(f"{place} is empty: write a text")
-    return text
-
-
-def _such(allowed: Callable[[Any], bool], problem: str) -> Reader:
-    """Return what reads a value that must be allowed."""
-
-    def read(found: Any, place: str) -> Any:
-        if not allowed(found):
-            raise ConfigError(f"{place} {problem}")
-        return found
-
-    return read
-
-
-_NUMBER = _such(lambda found: type(found) is int and 0 <= found <= 12, "is no whole number from 0 to 12: correct it")
-_SWITCH = _such(lambda found: isinstance(found, bool), "is neither true nor false: write one of them")
-_SETTINGS = _such(lambda found: isinstance(found, dict) and bool(found), "names no setting: write {molecules = 200}")
-
-
-def _list(entry: Reader, most: int | None = None) -> Reader:
-    """Return what reads a list of entries, at most so many."""
-
-    def read(found: Any, place: str) -> list[Any]:
-        if not isinstance(found, list):
-            name = place.partition(" ")[0]
-            raise ConfigError(f"{place} is no list: write [[{name}]] with two brackets, or a list of texts for choices")
-        if most is not None and len(found) > most:
-            raise ConfigError(f"{place} are too many: keep {most} of them")
-        return [entry(each, f"{place} {number}") for number, each in enumerate(found, 1)]
-
-    return read
-
-
-def _table(**entries: tuple[Reader, Any]) -> Reader:
-    """Return what reads a table of entries, each with its reader and its default, which is ... if it must be given."""
-
-    def read(found: Any, place: str) -> dict[str, Any]:
-        if not isinstance(found, dict):
-            raise ConfigError(f"{place} is no table: write [{place}] above its entries")
-        within = f"{place}, " if place else ""
-        for name in sorted(found.keys() - entries.keys()):
-            raise ConfigError(f"{within}{shown(name)} is unknown: correct the name, or remove it")
-        for name, (_, default) in entries.items():
-            if default is ... and name not in found:
-                raise ConfigError(f"{within}{name} is missing: add it")
-        return {
-            name: reader(found[name], f"{within}{name}") if name in found else default
-            for name, (reader, default) in entries.items()
-        }
-
-    return read
-
-
-_QUESTION: dict[str, tuple[Reader, Any]] = {
-    "ask": (_needed, ...),
-    "answer": (_text, ""),
-    "lines": (_NUMBER, None),  # empty ones, below the question
-    "lab": (_SWITCH, True),  # whether running pages can answer it
+_KINDS: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "text": (lambda found: bool(found.strip()), "is empty: write a text"),
+    "number": (lambda found: type(found) is int and 0 <= found <= 12, "is no whole number from 0 to 12: correct it"),
+    "switch": (lambda found: isinstance(found, bool), "is neither true nor false: write one of them"),
+    "settings": (lambda found: isinstance(found, dict) and bool(found), "names no setting: write {molecules = 200}"),
 }
-_PREDICTION = _table(
-    **_QUESTION,
-    choices=(_list(_needed), ()),  # to tick; the one with the number `right` is right
-    right=(_NUMBER, None),
-    sketch=(_table(x=(_needed, ...), y=(_needed, ...)), None),  # empty axes for a guess: their labels, with units
-)
+"""What an entry of each kind must be, and what is wrong with another one."""
+_QUESTION: dict[str, tuple[Any, Any]] = {  # the shape of each entry, and its default, which is ... if it must be given
+    "ask": ("text", ...),
+    "answer": ("text", ""),
+    "lines": ("number", None),  # empty ones, below the question
+    "lab": ("switch", True),  # whether running pages can answer it
+}
+_PREDICTION = _QUESTION | {
+    "choices": (["text"], ()),  # to tick; the one with the number `right` is right
+    "right": ("number", None),
+    "sketch": ({"x": ("text", ...), "y": ("text", ...)}, None),  # empty axes for a guess: their labels, with units
+}
+_ROW = {
+    "headline": ("text", ...),
+    "label": ("text", ...),
+    "unit": ("text", "1"),
+    "theory": ("text", ""),  # the formula for students; empty if that needs a computer
+    "runs": ("text", "ABCD"),  # the letters of the runs that report it
+}
+_SHEET = {
+    "goal": ("text", ...),  # the subject of the sheet, in two sentences
+    "predict": ([_PREDICTION], ()),
+    "change": ([{"title": ("text", ...), "set": ("settings", ...)}], ()),  # of the runs after the first
+    "row": ([_ROW], ()),  # of the table; if there are none, it has all headlines of the scene
+    **{name: ([_QUESTION], ()) for name in SECTIONS},
+    "constants": ("text", ""),  # that the formulas need, printed above the table
+    "leaves_out": ("text", ""),  # what the model leaves out; if it is empty, the scene's docstring tells it
+}
 
 
-def _prediction(found: Any, place: str) -> dict[str, Any]:
-    """Return a prediction that is written down before the run: answers to tick, a sketch, or free lines."""
-    read: dict[str, Any] = _PREDICTION(found, place)
-    right, choices = read["right"], read["choices"]
-    if right is not None and not 1 <= right <= len(choices):
-        raise ConfigError(f"{place}: right = {right} is the number of none of its {len(choices)} choices: count from 1")
+def _checked(found: Any, shape: Any, place: str, default: Any = ...) -> Any:
+    """Return an entry of the file, checked: a table, a list of entries, a text, or a value of another kind."""
+    match shape:
+        case dict():
+            return _table(found, shape, place)
+        case [entry]:
+            if not isinstance(found, list):
+                again = f"write [[{place.partition(' ')[0]}]] with two brackets, or a list of texts for choices"
+                raise ConfigError(f"{place} is no list: {again}")
+            if place == "change" and len(found) > MOST_CHANGES:
+                raise ConfigError(f"{place} are too many: keep {MOST_CHANGES} of them")
+            return [_checked(each, entry, f"{place} {number}") for number, each in enumerate(found, 1)]
+    found = _text(found, place) if shape == "text" else found
+    allowed, problem = _KINDS[shape]
+    if not allowed(found) and found != default:
+        raise ConfigError(f"{place} {problem}")
+    return found
+
+
+def _table(found: Any, entries: dict[str, tuple[Any, Any]], place: str) -> dict[str, Any]:
+    """Return a table of the file, checked, with the defaults of what it does not have."""
+    if not isinstance(found, dict):
+        raise ConfigError(f"{place} is no table: write [{place}] above its entries")
+    within = f"{place}, " if place else ""
+    for name in sorted(found.keys() - entries.keys()):
+        raise ConfigError(f"{within}{shown(name)} is unknown: correct the name, or remove it")
+    read = {}
+    for name, (shape, default) in entries.items():
+        if default is ... and name not in found:
+            raise ConfigError(f"{within}{name} is missing: add it")
+        read[name] = _checked(found[name], shape, within + name, default) if name in found else default
+    if (right := read.get("right")) is not None and not 1 <= right <= len(read["choices"]):
+        count = len(read["choices"])
+        raise ConfigError(f"{place}: right = {right} is the number of none of its {count} choices: count from 1")
     return read
-
-
-_SHEET = _table(
-    goal=(_needed, ...),  # the subject of the sheet, in two sentences
-    predict=(_list(_prediction), ()),
-    change=(_list(_table(title=(_needed, ...), set=(_SETTINGS, ...)), 3), ()),  # of the runs after the first
-    row=(  # of the table; if there are none, it has all headlines of the scene
-        _list(
-            _table(
-                headline=(_needed, ...),
-                label=(_needed, ...),
-                unit=(_text, "1"),
-                theory=(_text, ""),  # the formula for students; empty if that needs a computer
-                runs=(_text, "ABCD"),  # the letters of the runs that report it
-            )
-        ),
-        (),
-    ),
-    **{name: (_list(_table(**_QUESTION)), ()) for name in SECTIONS},
-    constants=(_text, ""),  # that the formulas need, printed above the table
-    leaves_out=(_text, ""),  # what the model leaves out; if it is empty, the scene's docstring tells it
-)
 
 
 def text_of(module: ModuleType) -> Path | None:
@@ -204,8 +172,7 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     atmosbox.errors.FileError: The words of the sheet cannot be read from no/such.sheet.toml: No such file or directory.
     """
     try:
-        words: dict[str, Any] = _SHEET(tomllib.loads(Path(path).read_text(encoding="utf-8")), "")
-        return words
+        return _table(tomllib.loads(Path(path).read_text(encoding="utf-8")), _SHEET, "")
     except OSError as error:
         raise FileError(f"The words of the sheet cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

@@ -28,11 +28,7 @@ __all__ = ["Worksheet", "worksheet"]
 
 _COMMAND = "`--"
 """A question that contains this needs commands."""
-_KNOBS = {
-    "ask": "Begin A again, and turn a knob above its graphs while it plays. Write down first what each graph will do.",
-    "answer": "",
-    "lines": 4,
-}
+_KNOBS = "Begin A again, and turn a knob above its graphs while it plays. Write down first what each graph will do."
 _NOT_HERE = "*Written for the scene as it comes; with these settings its numbers are not available.*"
 _WITH_CARE = (
     "The numbers are of these runs, but the words of the answers are for the scene as it comes: read them with care."
@@ -183,7 +179,7 @@ def _written(path: Path, words: dict[str, Any], runs: Sequence[Trial], answers: 
     for name in ("predict", *SECTIONS) if lab else ():
         content[name] = [each for each in content[name] if each["lab"] and _COMMAND not in each["ask"]]
     if lab and build(first).knobs:
-        content["try"] = [*content["try"], _KNOBS]
+        content["try"] = [*content["try"], {"ask": _KNOBS, "answer": "", "lines": 4}]
     content |= {"lab": lab, "graphs": graph_rows(runs) if lab else []}
     if lab:
         content["row"] = []
@@ -196,16 +192,8 @@ def _written(path: Path, words: dict[str, Any], runs: Sequence[Trial], answers: 
         unit = spelled(row["unit"])
         row["label"] += f" [{unit}]" if unit else ""
         row["lines"] = [_line(run, row["headline"], answers) for run in runs if run.letter in row["runs"]]
-    disagreements = (
-        []
-        if lab
-        else [
-            f"Run {run.letter} disagrees with theory: {each.label}."
-            for run in runs
-            for each in run.headlines.values()
-            if each.agrees is False
-        ]
-    )
+    off = [(run, each) for run in runs for each in run.headlines.values() if each.agrees is False and not lab]
+    disagreements = [f"Run {run.letter} disagrees with theory: {each.label}." for run, each in off]
     remarks = [*_excuses(runs, {row["headline"] for row in content["row"]}), *disagreements]
     title, about = getattr(first.module, "title", first.scene), _about(first, answers)
     template = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined).from_string(
@@ -245,14 +233,11 @@ def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
 
 def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
     """Return sentences on numbers that agree with theory only with the stated model error, and its reason."""
-    excuses: dict[str, list[str]] = {}
-    for run in runs:
-        for each in run.headlines.values():
-            if each.name in rows and each.verdict == AS_STATED:
-                known = bare(from_si(each.known, each.display_unit, difference=True), 2)
-                allowed = f"{known} {spelled(each.difference_unit)}".rstrip()
-                excuses.setdefault(each.excuse, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
-    return [
-        f"More than four standard errors: {'; '.join(numbers)}, because {reason}."
-        for reason, numbers in excuses.items()
-    ]
+    stated = [(run, each) for run in runs for each in run.headlines.values() if each.verdict == AS_STATED]
+    found = []
+    for run, each in stated:
+        if each.name in rows:
+            known = bare(from_si(each.known, each.display_unit, difference=True), 2)
+            allowed = f"{each.label} in run {run.letter} (up to {known} {spelled(each.difference_unit)}".rstrip()
+            found.append(f"More than four standard errors: {allowed}), because {each.excuse}.")
+    return found

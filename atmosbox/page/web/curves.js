@@ -75,12 +75,7 @@ function curveOf(panel, line, numbers) {
   const [across, up] = [numbers.get(line.x.name), numbers.get(line.y.name)];
   if (!across?.length || !up?.length) return null;
   const count = Math.max(across.length, up.length);
-  let x = along(shown(across, line.x), count), y = along(shown(up, line.y), count);
-  if (line.minus) {
-    const base = along(shown(numbers.get(line.minus.name) ?? [], line.minus), count);
-    if (panel.across) x = x.map((value, place) => value - base[place]);
-    else y = y.map((value, place) => value - base[place]);
-  }
+  const x = along(shown(across, line.x), count), y = along(shown(up, line.y), count);
   const faint = numbers.settling.has(line.x.name) || numbers.settling.has(line.y.name);
   const spread = faint || !line.error ? null : numbers.get(line.error.name);
   if (line.worst && spread?.some(Number.isFinite)) { // a temperature that is hardly known is not drawn

@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,25 +14,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
 from matplotlib.lines import Line2D
 
 from atmosbox.errors import FileError, SettingError
-from atmosbox.file.output_path import named, write_whole
-from atmosbox.plot import FORMATS
 from atmosbox.plot.caption import footer
-from atmosbox.plot.compare.change import Naming
+from atmosbox.plot.compare.difference import Naming
 from atmosbox.plot.curve import Curve, curve, unit_of
-from atmosbox.plot.draw import Entry, draw_line, draw_steps, line_style, set_limits
-from atmosbox.plot.figure_file import render
-from atmosbox.plot.layout import Draw, page
-from atmosbox.plot.run_figure import explanation, panels_of
-from atmosbox.plot.skewt import levels, put_background, put_levels, skewed_axes, slender
+from atmosbox.plot.draw import Entry, draw_line, draw_steps, line_style
+from atmosbox.plot.figure_file import write
+from atmosbox.plot.layout import page
+from atmosbox.plot.run_figure import explanation, holds, painter, panels_of
 from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find
 from atmosbox.plot.units import spelled
 from atmosbox.scene.panels import ROLES, Line, Panel
-
-__all__ = ["MOST", "drawn", "figure", "save", "shared_panels", "spoken"]
 
 MOST = len(DATA_COLOURS)
 """Greatest number of runs in one figure."""
@@ -80,11 +75,9 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     >>> [text.get_text() for text in figure(runs, ["cold", "warm"], "Two").axes[0].get_legend().get_texts()]
     ['cold', 'warm']
     """
-    look = find(theme)
-    panels = shared_panels(datasets)
-    draw = _painter(datasets, labels, look)
-    small = _small(datasets) + explanation(datasets[0], panels)
-    return page(panels, look, datasets[0], draw, [], small, title)
+    look, panels = find(theme), shared_panels(datasets)
+    draw = painter(datasets, look, partial(_draw_lines, datasets, labels))
+    return page(panels, look, datasets[0], draw, [], _small(datasets) + explanation(datasets[0], panels), title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
@@ -114,29 +107,18 @@ def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
     atmosbox.errors.FileError: These runs have no graph in common: compare runs of one scene.
     """
     first = datasets[0]
-    found = [
-        panel
-        for panel in panels_of(first)
-        if panel.kind not in ("discs", "atmosphere")
-        and any(line.role == "data" and all(_held(each, line) for each in datasets) for line in panel.lines)
-    ]
+    found = []
+    for panel in panels_of(first):
+        measured = [line.variables for line in panel.lines if line.role == "data"]
+        if panel.kind == "atmosphere" or not any(all(holds(each, names) for each in datasets) for names in measured):
+            continue
+        if panel.kind != "skewt":  # all runs are drawn in the same units
+            x_unit, y_unit = (getattr(panel, f"{axis}_unit") or unit_of(first, panel, axis) for axis in "xy")
+            panel = replace(panel, x_unit=x_unit, y_unit=y_unit)
+        found.append(panel)
     if not found:
         raise FileError("These runs have no graph in common: compare runs of one scene.")
-    return tuple(_with_units(first, panel) for panel in found)
-
-
-def _held(dataset: xr.Dataset, line: Line) -> bool:
-    """Tell whether a run has the variables of a line."""
-    return all(name.partition("[")[0] in dataset.variables for name in line.variables)
-
-
-def _with_units(dataset: xr.Dataset, panel: Panel) -> Panel:
-    """Return a panel with its units filled in, so that all runs are drawn in the same units."""
-    if panel.kind == "skewt":
-        return panel
-    return replace(
-        panel, x_unit=panel.x_unit or unit_of(dataset, panel, "x"), y_unit=panel.y_unit or unit_of(dataset, panel, "y")
-    )
+    return tuple(found)
 
 
 def _small(datasets: Sequence[xr.Dataset]) -> str:
@@ -147,29 +129,8 @@ def _small(datasets: Sequence[xr.Dataset]) -> str:
     return " · ".join(" / ".join(dict.fromkeys(same)) for same in zip(*parts, strict=True))
 
 
-def _painter(datasets: Sequence[xr.Dataset], names: Sequence[str], look: Theme) -> Draw:
-    """Return the function that draws a panel of several runs."""
-
-    def draw(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        if panel.kind == "skewt":
-            skewed, axes = skewed_axes(drawing, spot)
-            entries, _ = _draw_lines(axes, panel, datasets, names, slender(look))
-            put_background(skewed, axes, look)
-            first, *rest = (levels(dataset, panel) for dataset in datasets)
-            if all({*each} == {*first} and np.allclose([each[k] for k in first], [*first.values()]) for each in rest):
-                put_levels(axes, first, look)
-            return axes, entries
-        axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
-        axes.grid(visible=True)
-        entries, most = _draw_lines(axes, panel, datasets, names, look)
-        set_limits(axes, panel, most)
-        return axes, entries
-
-    return draw
-
-
 def _draw_lines(
-    axes: Axes, panel: Panel, datasets: Sequence[xr.Dataset], names: Sequence[str], look: Theme
+    datasets: Sequence[xr.Dataset], names: Sequence[str], axes: Axes, panel: Panel, look: Theme
 ) -> tuple[list[Entry], int]:
     """Draw the curves of all runs; return the legend entries and the number of values of the longest curve.
 
@@ -182,23 +143,21 @@ def _draw_lines(
     for role in ROLES:
         lines = [line for line in panel.lines if line.role == role]
         for index, line in enumerate(lines):
-            curves = {k: curve(each, panel, line) for k, each in enumerate(datasets) if _held(each, line)}
+            curves = {k: curve(each, panel, line) for k, each in enumerate(datasets) if holds(each, line.variables)}
             most = max([most, *(each.x.size for each in curves.values())])
             called = {k: _called(datasets[k], panel, line) for k in curves}
             alike, laws = len(set(called.values())) < 2, [*curves.values()]
             if role != "data" and alike and all(_same(laws[0], other, panel) for other in laws[1:]):
                 entries += [(draw_line(axes, panel, line, each, look, index), line.label) for each in laws[:1]]
                 continue
-            several = replace(panel, lines=(line, replace(line, label="of another run"))) if not line.minus else panel
+            several = replace(panel, lines=(line, line))  # which gives the curve markers
             for run, values in curves.items():
                 colour, dashes = DATA_COLOURS[run], DATA_DASHES[(run * (panel.kind == "histogram") + index) % 3]
                 if role != "data":
                     dark = tuple(_DARKER * part for part in to_rgb(colour))
                     drawn = draw_line(axes, panel, line, values, look, index, color=dark)
                 elif panel.kind == "histogram":
-                    drawn = draw_steps(
-                        axes, panel, line, datasets[run], look, run, colour=colour, style=dashes, filled=False
-                    )
+                    drawn = draw_steps(axes, panel, line, datasets[run], look, run, color=colour, linestyle=dashes)
                 else:
                     mark = run + index * len(datasets)
                     drawn = draw_line(axes, several, line, values, look, mark, color=colour, linestyle=dashes)
@@ -230,17 +189,15 @@ def _same(one: Curve, other: Curve, panel: Panel) -> bool:
     """Tell whether two curves follow the same law, even if their points are at different places."""
     columns = []
     for x, y, _ in (one, other):
-        known = np.isfinite(x) & np.isfinite(y)
-        along, value = (y, x) if panel.measured_across else (x, y)
-        order = np.argsort(along[known], kind="stable")
-        columns += [along[known][order], value[known][order]]
-    x, y, u, v = columns
+        pairs = np.array([y, x] if panel.measured_across else [x, y])
+        pairs = pairs[:, np.isfinite(pairs).all(axis=0)]
+        columns.append(pairs[:, np.argsort(pairs[0], kind="stable")])
+    (x, y), (u, v) = columns
     if not x.size or not u.size:
         return bool(x.size == u.size)
-    inside = (u >= x[0] - 1e-9 * abs(x[0])) & (u <= x[-1] + 1e-9 * abs(x[-1]))
-    scale = max(float(np.ptp(y)), 1e-6 * float(np.abs(y).max()))
-    apart = np.abs(v - np.interp(u, x, y))[inside]
-    return bool(apart.size >= 0.5 * u.size and apart.max() <= max(_SAME * scale, 1e-300))
+    apart = np.abs(v - np.interp(u, x, y, left=np.nan, right=np.nan))
+    inside, scale = np.isfinite(apart), max(float(np.ptp(y)), 1e-6 * float(np.abs(y).max()), 1e-290)
+    return bool(inside.sum() >= 0.5 * u.size and apart[inside].max() <= _SAME * scale)
 
 
 def save(
@@ -289,18 +246,18 @@ def save(
     """
     if not 2 <= len(datasets) <= MOST:
         raise SettingError("FILE", None, f"is given {len(datasets)} times", "give two to six runs")
-    path, kind = named(path, format, FORMATS, force=force)
-    find(theme)
-    drawing, title = drawn(datasets, names, theme)
-    parameters = "; ".join(str(dataset.attrs.get("atmosbox_parameters", "")) for dataset in datasets)
-    write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
-    return path
+    drawing = partial(drawn, datasets, names, theme)
+    return write(drawing, datasets, heading(names), path, format, theme=theme, force=force)
 
 
-def drawn(datasets: Sequence[xr.Dataset], names: Naming, theme: str) -> tuple[Figure, str]:
-    """Return the figure of several runs, and its title."""
-    title = spoken(f"{' and '.join(dict.fromkeys(names.scenes))}: {names.title}")
-    return figure(datasets, [spoken(label) for label in names.labels], title, theme), title
+def drawn(datasets: Sequence[xr.Dataset], names: Naming, theme: str) -> Figure:
+    """Return the figure of several runs."""
+    return figure(datasets, [spoken(label) for label in names.labels], heading(names), theme)
+
+
+def heading(names: Naming) -> str:
+    """Return the heading of the figure of several runs: their scenes, and what differs between the runs."""
+    return spoken(f"{' and '.join(dict.fromkeys(names.scenes))}: {names.title}")
 
 
 def spoken(text: str) -> str:

@@ -33,8 +33,6 @@ class Line:
         compare with.
     error : str, optional
         Name of the standard error of the measured variable, drawn as a band or as bars of one standard error.
-    minus : str, optional
-        Name of a variable that is subtracted from the measured one, to show a misfit.
 
     Raises
     ------
@@ -54,17 +52,15 @@ class Line:
     label: str
     role: str = "data"
     error: str | None = None
-    minus: str | None = None
 
     def __post_init__(self) -> None:
         for name in ("x", "y", "label"):
             check_text("line", name, getattr(self, name))
-        for name in ("error", "minus"):
-            if getattr(self, name) is not None:
-                check_text("line", name, getattr(self, name))
+        if self.error is not None:
+            check_text("line", "error", self.error)
         check_choice("line", "role", self.role, ROLES)
 
     @property
     def variables(self) -> tuple[str, ...]:
         """Names of the variables that the curve needs."""
-        return tuple(name for name in (self.x, self.y, self.error, self.minus) if name is not None)
+        return tuple(name for name in (self.x, self.y, self.error) if name is not None)

@@ -142,8 +142,6 @@ class Panel:
             raise ValueError(f"the panel {self.title!r} is of the kind {self.kind!r}, which {wanted}.")
         if self.marks and self.kind != "skewt":
             raise ValueError(f"the panel {self.title!r} has marks, and only a panel of the kind 'skewt' shows them.")
-        if self.kind == "skewt" and any(line.minus for line in self.lines):
-            raise ValueError(f"the panel {self.title!r} shows temperatures in a skew-T, and no differences of them.")
 
     def _set_skewt_axes(self) -> None:
         """Give the panel the axes of a skew-T, the only ones allowed."""
