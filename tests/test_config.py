@@ -46,10 +46,10 @@ def test_a_settings_file_may_leave_things_out(tmp_path):
 
 def test_a_settings_file_that_says_something_else_is_refused(tmp_path):
     cases = [
-        ("[settings]\nt = 25degC", " is not TOML (Invalid value (at line 2", 'such as temperature = "25degC"'),
+        ("[settings]\nt = 25degC", "(at line 2", 'such as temperature = "25degC"'),
         (
             "[settings]\nt = 1\nt = 2",
-            " is not TOML (Cannot overwrite a value (at line 3",
+            "(at line 3",
             "write one name = value a line",
         ),
         ("a = " + "[" * 5000, " is not TOML (", "write one name = value a line"),
