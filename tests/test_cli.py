@@ -165,7 +165,7 @@ REFUSED = [
     (["run", "temperature", "temperature=30", "degC"], "in one word: write temperature=30degC"),
     (["run", "temperature", "temperature", "30"], "in one word: write temperature=30"),
     (["run", "temperature", "temperature"], "in one word: write temperature=VALUE"),
-    (["run", "temperature", "30"], "30 is too much for atmosbox run"),
+    (["run", SCENE, "30"], "30 is too much for atmosbox run"),
     (["run", "temperature", "temperature="], "has no value: give --set temperature=value"),
     (["run", "temperature", "rotation=maybe"], "give one of molecules, temperature"),
     (["run", SCENE, "--set", "duration=2degC"], "--set duration="),

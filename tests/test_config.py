@@ -46,12 +46,8 @@ def test_a_settings_file_may_leave_things_out(tmp_path):
 
 def test_a_settings_file_that_says_something_else_is_refused(tmp_path):
     cases = [
-        ("[settings]\nt = 25degC", " is not TOML (Invalid value (at line 2", 'such as temperature = "25degC"'),
-        (
-            "[settings]\nt = 1\nt = 2",
-            " is not TOML (Cannot overwrite a value (at line 3",
-            "write one name = value a line",
-        ),
+        ("[settings]\nt = 25degC", "(at line 2", 'such as temperature = "25degC"'),
+        ("[settings]\nt = 1\nt = 2", "(Cannot overwrite a value", "write one name = value a line"),
         ("a = " + "[" * 5000, " is not TOML (", "write one name = value a line"),
         (b"a = 1\n# caf\xe9", ", line 2 is not UTF-8 text", "save the file as UTF-8"),
         ("scene = 1".encode("utf-16"), " is not a settings file", "saved as UTF-8"),

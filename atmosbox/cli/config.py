@@ -136,4 +136,4 @@ def _toml(raw: bytes, where: str) -> dict[str, Any]:
         raise ConfigError(f"{where}, line {line} is not UTF-8 text: save the file as UTF-8.") from error
     except (ValueError, RecursionError) as error:
         fix = 'write one name = value a line, with text in quotes, such as temperature = "25degC"'
-        raise ConfigError(f"{where} is not TOML ({shown(str(error))}): {fix}.") from error
+        raise ConfigError(f"{where} is not TOML ({shown(str(error), longest=200)}): {fix}.") from error

@@ -145,10 +145,11 @@ def _say(grid: Plan, found: xr.Dataset, path: Path, *, as_json: bool, quiet: boo
             f"see member_ledger in {path}."
         )
     if failed:
-        named = [
-            f"{' '.join(grid.typed(each['point']))}, member {each['member']} ({each['reason'].rstrip('.')})"
-            for each in failed[:_MOST_NAMED]
-        ]
+        named = []
+        for each in failed[:_MOST_NAMED]:
+            point = zip(grid.vary, grid.typed(each["point"]), strict=True)
+            where = ", ".join(f"{name}={value}" for name, value in point)
+            named.append(f"{where}, member {each['member']} ({each['reason'].rstrip('.')})")
         named += [f"and {len(failed) - len(named)} more"] if len(failed) > len(named) else []
         why = f"{len(failed)} of {grid.runs} runs failed and are missing in {path}, see member_reason there"
         raise EngineError(f"{why}: {'; '.join(named)}.")
