@@ -12,6 +12,7 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "docs" / "examples"
 FLASK = (EXAMPLES / "my_scene.py").read_text(encoding="utf-8")
 
 
+@pytest.mark.nightly  # no scene needs its kernels
 def test_of_two_gases_in_gravity_each_has_its_own_height(tmp_path):
     file = tmp_path / "two.nc"
     result = typed("run", EXAMPLES / "two_gases.py", "molecules=300", "--out", file)
@@ -55,7 +56,8 @@ def test_a_scene_that_fails_is_told_its_line_and_the_reason(name, tmp_path, monk
     scene = FLASK.replace(old, new).replace("450", "100")
     assert scene.count(new) == 1
     Path("my_scene.py").write_text(scene, encoding="utf-8")
-    result = typed("run", "./my_scene.py", "molecules=10")
+    engine = "exact" if "engine" in name else "dsmc"  # whose kernels other tests need
+    result = typed("run", "./my_scene.py", "molecules=10", "--engine", engine)
     assert result.exit_code in (1, 2)
     *_, sentence = result.stderr.splitlines()  # before it, that the engine is compiled
     assert said.replace("LINE", f"my_scene.py, line {scene.partition(new)[0].count(chr(10)) + 1}") in sentence

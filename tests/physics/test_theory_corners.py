@@ -20,8 +20,8 @@ from tests.few_frames import cut
 
 SHORT = ("duration", "ascent", "travel")
 FEW = 300
-LEAST = {"diffusion": 3000}
-"""Number of molecules below which a box is too narrow."""
+LEAST = {"diffusion": 3000, "nuclei": 1000}
+"""Number of molecules below which a box is too narrow, or needs the kernels of drops that are larger than cells."""
 THINNEST = 0.01
 """Density of attracting molecules below which more than a million molecules of air would be needed in the box."""
 BUSY = {("diffusion", "length"), ("diffusion", "pressure"), ("diffusion", "diameter")}

@@ -154,7 +154,6 @@ def vapour_number(saturated, molecules):
 
 QUICK = [
     *((name, None, 2, 25_000) for name in ("mist", "mist without nuclei of which a third sticks")),
-    ("mist without nuclei", None, 0, 25_000),
     *((name, 0.2, 2, 15_000) for name in ("mist", "pool")),
     *((name, 2.0, 2, 40_000) for name in ("mist of which a third sticks", "pool")),
 ]

@@ -76,7 +76,11 @@ def is_sound(outcome):
 
 
 @pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
-@pytest.mark.parametrize("extreme", [DRY, COLD, FEW], ids=["dry", "cold", "few"])
+@pytest.mark.parametrize(
+    "extreme",
+    [*(pytest.param(each, marks=pytest.mark.nightly) for each in (DRY, COLD)), FEW],  # without vapour: other kernels
+    ids=["dry", "cold", "few"],
+)
 def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
     outcome = run(scene, **extreme[scene])
     is_sound(outcome)
@@ -89,6 +93,7 @@ def test_energy_and_water_are_kept_at_extreme_settings(scene, extreme):
         assert all(each.agrees for each in outcome.headlines)
 
 
+@pytest.mark.nightly  # without vapour it needs other kernels
 def test_a_parcel_too_dry_for_a_cloud_follows_the_dry_adiabat_and_states_no_base():
     outcome = run("lifting-moist", dewpoint=-80.0, ascent=300)
     dry = outcome.dataset
