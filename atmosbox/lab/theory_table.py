@@ -103,11 +103,11 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     if lift is not None:
         return [_way(setup, lift), _adiabat(setup, lift)]
     knobs = {knob.name: knob for knob in setup.knobs}
-    if {"temperature", "gravity"} <= set(knobs):
+    if "temperature" not in knobs:
+        return _course(prepared, setup, found)
+    if "gravity" in knobs:
         return [_column(prepared, found, knobs["temperature"], knobs["gravity"])]
-    return (
-        [_walls(prepared, found, knobs["temperature"])] if "temperature" in knobs else _course(prepared, setup, found)
-    )
+    return [_walls(prepared, found, knobs["temperature"])]
 
 
 def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
@@ -133,41 +133,43 @@ def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
     for kelvin in grid:
         here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
         for name, values in prepared.module.theory(here, prepared.settings).items():
-            curves.setdefault(name, []).append(plain(values[-1:])[0] if _is_series(values, found) else plain(values))
+            curves.setdefault(name, []).append(_last(values, found))
     return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
 
 
 def _column(prepared: Prepared, found: xr.Dataset, knob: Knob, pull: Knob) -> dict[str, Any]:
-    """Return the profiles of theory of a column at rest as functions of the temperature of its floor over gravity.
+    """Return the curves of theory of a column at rest as functions of the temperature of its floor over gravity.
 
     Hard molecules have no energy of their own to compare kT with. So, at the same ratio, a profile does not depend on
     gravity, or is in proportion to it, as pressure and temperature are.
     """
-    usual = to_si(pull.value, pull.unit)
-    low, high = (
-        to_si(knob.low, knob.unit) / to_si(pull.high, pull.unit),
-        to_si(knob.high, knob.unit) / to_si(pull.low, pull.unit),
-    )
-    grid = np.geomspace(low, high, _POINTS)
+    usual, least, most = (to_si(gravity, pull.unit) for gravity in (pull.value, pull.low, pull.high))
+    cold, warm = (to_si(temperature, knob.unit) for temperature in (knob.low, knob.high))
+    grid = np.geomspace(cold / most, warm / least, _POINTS)
 
     def told(ratio: float, gravity: float) -> dict[str, Any]:
-        warm = found.wall_temperature.where(found.wall_temperature.isnull(), ratio * gravity)
-        here = found.assign(
-            wall_temperature=warm, gravity=("elapsed_time", np.full(warm.sizes["elapsed_time"], gravity))
-        )
+        here = found.assign(gravity=0.0 * found.elapsed_time + gravity)
+        here["wall_temperature"] = found.wall_temperature.where(found.wall_temperature.isnull(), ratio * gravity)
         return dict(prepared.module.theory(here, prepared.settings))
 
     rows = [told(ratio, usual) for ratio in grid.tolist()]
     double = told(grid[0], 2.0 * usual)
     grows = {name for name, values in rows[0].items() if np.allclose(double[name], 2.0 * np.asarray(values))}
-    curves = {name: [plain(row[name] / usual if name in grows else row[name]) for row in rows] for name in rows[0]}
+    per = {name: usual if name in grows else 1.0 for name in rows[0]}
+    curves = {name: [_last(row[name] / each, found) for row in rows] for name, each in per.items()}
+    times = dict.fromkeys(sorted(grows), "gravity")
     return {
         "along": "wall_temperature[z_low]",
         "over": "gravity",
         "grid": plain(grid),
         "curves": curves,
-        "times": dict.fromkeys(sorted(grows), "gravity"),
+        "times": times,
     }
+
+
+def _last(values: Any, found: xr.Dataset) -> Any:
+    """Return a profile of theory, or the last value of a series, as JSON can hold it."""
+    return plain(values[-1:])[0] if _is_series(values, found) else plain(values)
 
 
 def _is_series(values: Any, found: xr.Dataset) -> bool:

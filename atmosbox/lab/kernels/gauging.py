@@ -29,9 +29,8 @@ class Gauges(NamedTuple):
 
     ``reading : (Reading,)`` has the last readings. ``warmth : (2,)`` is the sum of kT over the samples of a frame
     [energy], and their number; ``before : (8,)`` the impulses of the walls and the time at the end of the last frame,
-    and the energy at the start of all frames and what changes of gravity
-    have given since [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4
-    the floor only.
+    and the energy at the start of all frames with what changes of gravity have given since [energy]. ``barometer`` says
+    which walls measure the pressure: 0 all, 4 the floor only.
 
     ``edges : (bin + 1,)`` are the edges of the bins of speed [velocity], ``counts : (bin,)`` the molecules in them, and
     ``speeds : (bin,)`` the share of molecules by speed [1/velocity]. ``sums : (4, layer)`` are number, energy, degrees
