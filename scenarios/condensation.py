@@ -232,7 +232,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     begun = settings.si.humidity * float(law.saturation_vapor_pressure(settings.si.temperature)) / 100.0
     return (
         over_time(
-            "Vapour condenses until saturation",
+            "The air becomes saturated",
             {"water_vapor_partial_pressure": "vapour"},
             "vapour pressure",
             "hPa",

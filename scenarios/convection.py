@@ -547,7 +547,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headlines=("mean_core_lapse_rate",),
         )  # fmt: skip
     rolls = Panel(
-        "line", "The wind" if settings.case in TITLES else "The wind grows and stays",
+        "line", "The wind" if settings.case in TITLES else "How fast the rolls turn",
         (
             Line("elapsed_time", "roll_speed", "rolls"),
             Line("elapsed_time", "roll_speed_theory", "linear theory", "theory"),

@@ -134,9 +134,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of temperature and pressure against time, and of the speeds."""
     time, walls, noise = "elapsed_time", "air_temperature_theory", "air_temperature_noise"
     density = "speed_probability_density"
-    warming = settings.start_temperature <= settings.temperature
     temperature = over_time(
-        "Cold molecules between warm walls" if warming else "Hot molecules between cooler walls",
+        "Molecules become as warm as the walls",
         {"air_temperature": "molecules"}, "temperature", "degC",
         more=(Line(time, walls, "walls ± expected scatter", "theory", error=noise),),
         log=True, parts=60, headline="mean_temperature", start=settings.start_temperature,

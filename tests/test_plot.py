@@ -370,8 +370,8 @@ def test_the_titles_of_scenes_are_true_of_their_settings():
         scene = scenarios.load(name)
         return [panel.title for panel in scene.panels(scene.Settings(**settings))]
 
-    assert "Cold molecules between warm walls" in titles("temperature")
-    assert "Hot molecules between cooler walls" in titles("temperature", start_temperature=500.0)
+    assert "Too dry for a cloud" in titles("lifting-moist", dewpoint=-60.0)
+    assert "It arrives as warm as it set out" in titles("mountains", rain=False)
     assert "Discs alike: the same energy" in titles("elastic-collisions", mass_ratio=1.0)
 
 

@@ -143,11 +143,11 @@ export class Graph {
       }
       if (from) add(...from);
     }
-    this.held = known.y.length > 0;
+    const measured = known.y.length > 0;
     if (start?.length && kind !== "atmosphere" && (start[0] || !this.panel.x.log)) add(...start);
     planned?.x.forEach((x, place) => add(x, planned.y[place]));
-    this.waiting.hidden = known.y.length > 0;
-    this.held ||= known.y.length > 1;
+    this.held = measured || known.y.length > 1; // the start alone makes no axes
+    this.waiting.hidden = this.held;
     if (kind === "skewt" && known.y.length) {
       this.foot = Math.max(...known.y) * 1.02;
       known.x = known.x.map((value, index) => slanted(value, known.y[index], this.foot));
@@ -269,7 +269,7 @@ export class Graph {
   #start(context, { left, top, width }, unit) {
     const { start = [], x: axis } = this.panel;
     const [x, y] = this.curves.find(({ from }) => from)?.from ?? (start[0] || !axis.log ? start : []);
-    if (y === undefined) return;
+    if (y === undefined || !this.held) return;
     context.save();
     context.font = font(scaled(12) * unit);
     const spot = this.#spot(x, y), before = spot[0] > left + 0.8 * width;
