@@ -333,9 +333,12 @@ def test_a_prediction_is_drawn_by_hand_and_by_keyboard_and_goes_into_link_and_ta
         refused.close()
 
 
-def test_results_are_hidden_until_the_prediction_is_drawn_if_the_address_says_so(lab):
+def test_results_are_hidden_until_the_prediction_is_drawn_if_the_address_says_so(lab, usual_tab):
+    usual_tab.emulate_media(reduced_motion="no-preference")
     shown = lab("lifting-dry", {"molecules": 100, "ascent": 40}, "?predict")
     page = shown.page
+    page.wait_for_timeout(500)
+    assert page.locator("#time").inner_text() == "0 ns"  # it waits
     shown.ask(type="frames", value=20)
     results = [page.locator(name) for name in ("#gauges", ".sentences", ".atmosphere", ".histogram", ".key")]
     shown.until(lambda: page.locator("#gauges button").count() > 0)
@@ -350,6 +353,8 @@ def test_results_are_hidden_until_the_prediction_is_drawn_if_the_address_says_so
     page.get_by_role("button", name="Done").click()
     shown.until(lambda: all(each.is_visible() for each in page.locator("#gauges, .graph, .key").all()))
     assert "dry adiabat" in page.locator(".key").all_inner_texts()[1]
+    assert page.locator("body[data-playing=true]").count() == 1
+    usual_tab.emulate_media(reduced_motion="reduce")
 
 
 def test_a_page_inside_of_another_has_no_header_and_tells_its_height(lab, tmp_path):

@@ -59,14 +59,19 @@ export class Prediction {
   }
 
   #start() {
-    if (document.body.dataset.playing === "true") {
-      this.say({ type: "pause" });
-      this.resumes = true;
-    }
-    this.draft ??= this.values ?? this.#middle();
+    this.#begin(this.values ?? this.#middle());
     this.#show();
     this.graph.element.scrollIntoView({ block: "center" });
     this.handles[0].focus({ preventScroll: true });
+  }
+
+  // Draw from now on, while the box stands still.
+  #begin(draft) {
+    if (this.draft) return;
+    this.draft = draft;
+    if (document.body.dataset.playing !== "true") return;
+    this.say({ type: "pause" });
+    this.resumes = true;
   }
 
   #middle() {
@@ -86,7 +91,7 @@ export class Prediction {
 
   #show() {
     const { draw, graph, values } = this;
-    if (this.asked && draw && !values) this.draft ??= this.#middle();
+    if (this.asked && draw && !values) this.#begin(this.#middle());
     const open = Boolean(this.draft);
     document.body.classList.toggle("drawing", open);
     this.bar?.remove();
