@@ -26,37 +26,18 @@ needs_ffmpeg = pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is 
 
 
 @pytest.fixture(scope="module")
-def runs(small_run, tmp_path_factory):
-    """Short runs of some scenes, as datasets and as files."""
-    folder = tmp_path_factory.mktemp("runs")
-    made = {scene: small_run(scene) for scene in SMALL_RUNS}
-    return {scene: (run, output.write(run, folder / f"{scene}.nc")) for scene, run in made.items()}
-
-
-@pytest.fixture(scope="module")
-def sheets(runs):
-    """The pages of their films; each test draws its own frames on them."""
-    with style(LOOK):
-        return {scene: Sheet(dataset, LOOK, molecules(dataset)) for scene, (dataset, _) in runs.items()}
+def runs(small_run):
+    return {scene: small_run(scene) for scene in SMALL_RUNS}
 
 
 def command(*words):
     return CliRunner().invoke(app, ["animate", *map(str, words)], env={"COLUMNS": None})
 
 
-def refused(result, status=2):
-    assert result.exit_code == status, result.output
-    assert result.stdout == ""
-    (line,) = result.stderr.splitlines()
-    return line
-
-
-# The pictures
-
-
-def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs, sheets):
-    dataset, sheet = runs["temperature"][0], sheets["temperature"]
+def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs):
+    dataset = runs["temperature"]
     with style(LOOK):
+        sheet = Sheet(dataset, LOOK, molecules(dataset))
         sheet.picture(7)
     drawn = sheet.stage.molecules
     seen = np.asarray(drawn.get_offsets())
@@ -68,7 +49,7 @@ def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs,
 
 
 def test_curves_end_at_the_clock_and_theory_stands_from_the_start(runs):
-    dataset = runs["lifting-dry"][0]
+    dataset = runs["lifting-dry"]
     with style(LOOK):
         sheet = Sheet(dataset, LOOK)
         whole = len(sheet.graphs[1].axes.lines)
@@ -81,23 +62,20 @@ def test_curves_end_at_the_clock_and_theory_stands_from_the_start(runs):
 
 
 def test_speeds_and_layers_grow_into_what_the_run_has_measured(runs):
-    warm, column = Running(runs["temperature"][0]), Running(runs["atmosphere"][0])
-    bins = np.diff(runs["temperature"][0].speed_bnds.values, axis=1)[:, 0]
+    warm, column = Running(runs["temperature"]), Running(runs["atmosphere"])
+    bins = np.diff(runs["temperature"].speed_bnds.values, axis=1)[:, 0]
     cold, late = (float(np.sum(warm.values("speed_probability_density", k) * bins)) for k in (0, 999))
     assert cold == pytest.approx(1.0, abs=0.05)
     assert late == pytest.approx(1.0, abs=0.05)
-    last = runs["atmosphere"][0].sizes["elapsed_time"] - 1
+    last = runs["atmosphere"].sizes["elapsed_time"] - 1
     grown = column.values("number_density", last)
     known = np.isfinite(grown)
     assert known.sum() > 5
-    assert grown[known] == pytest.approx(runs["atmosphere"][0].number_density.values[known])
-
-
-# The files
+    assert grown[known] == pytest.approx(runs["atmosphere"].number_density.values[known])
 
 
 def test_a_gif_has_the_pictures_asked_for_and_lasts_as_long(runs, tmp_path):
-    path, _ = film.save(runs["temperature"][0], tmp_path / "warm.gif", fps=20.0, seconds=0.5)
+    path, _ = film.save(runs["temperature"], tmp_path / "warm.gif", fps=20.0, seconds=0.5)
     with Image.open(path) as opened:
         assert (opened.format, opened.n_frames, opened.size) == ("GIF", 10, (800, 450))
         lasts = 0
@@ -113,7 +91,7 @@ def test_a_gif_has_the_pictures_asked_for_and_lasts_as_long(runs, tmp_path):
 def test_an_mp4_is_what_presentations_play(runs, tmp_path):
     import imageio_ffmpeg
 
-    path, _ = film.save(runs["lifting-dry"][0], tmp_path / "lift.mp4", seconds=0.4, fps=10.0)
+    path, _ = film.save(runs["lifting-dry"], tmp_path / "lift.mp4", seconds=0.4, fps=10.0)
     reader = imageio_ffmpeg.read_frames(str(path))
     about = next(reader)
     reader.close()
@@ -123,12 +101,8 @@ def test_an_mp4_is_what_presentations_play(runs, tmp_path):
     assert [each.name for each in tmp_path.iterdir()] == ["lift.mp4"]
 
 
-# The command
-
-
 def test_the_command_films_beside_the_file_and_prints_the_path_and_the_same_run_gives_the_same_gif(runs, tmp_path):
-    path = tmp_path / "run.nc"
-    path.write_bytes(runs["temperature"][1].read_bytes())
+    path = output.write(runs["temperature"], tmp_path / "run.nc")
     result = command(path, "--seconds", "0.2", "--quiet")
     assert result.exit_code == 0, result.output
     assert result.stdout.strip() == str(tmp_path / "run.gif")
@@ -138,19 +112,11 @@ def test_the_command_films_beside_the_file_and_prints_the_path_and_the_same_run_
     assert (tmp_path / "run.gif").read_bytes() == made
 
 
-@pytest.fixture
-def bare(runs, tmp_path):
-    """A run without molecules."""
-    dataset = runs["lifting-dry"][0]
-    return output.write(dataset.drop_vars(["molecule_position", "molecule_speed"]), tmp_path / "bare.nc")
-
-
-def test_a_run_without_molecules_is_refused_with_the_flag_that_saves_them(bare):
-    sentence = refused(command(bare))
-    assert "--save-molecules" in sentence
-    assert "--graphs" in sentence
-
-
-def test_a_run_without_a_frame_is_refused(runs, tmp_path):
+def test_a_run_without_molecules_or_frames_is_refused(runs, tmp_path):
+    bare = output.write(runs["lifting-dry"].drop_vars(["molecule_position", "molecule_speed"]), tmp_path / "bare.nc")
+    refused = command(bare)
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "--save-molecules" in refused.stderr
+    assert "--graphs" in refused.stderr
     with pytest.raises(FileError, match="no frame to film"):
-        film.save(runs["temperature"][0].isel(elapsed_time=slice(0, 0)), tmp_path / "none.gif")
+        film.save(runs["temperature"].isel(elapsed_time=slice(0, 0)), tmp_path / "none.gif")

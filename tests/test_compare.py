@@ -32,7 +32,6 @@ def files(tmp_path_factory):
             made = json.loads(found.attrs["atmosbox_parameters"]) | {"engine": "stepped:delta=0.01"}
             output.write(found.assign_attrs(atmosbox_parameters=json.dumps(made)), folder / "stepped.nc")
     atmosbox.run("lifting-moist", out=folder / "moist.nc", molecules=300, ascent=20.0)
-    atmosbox.run("elastic-collisions", out=folder / "discs.nc", molecules=20, duration=2.0)
     return folder
 
 

@@ -52,26 +52,15 @@ def test_a_panel_that_cannot_be_drawn_is_refused_where_it_is_written():
 
 def test_foreign_or_old_text_is_refused_in_a_sentence():
     cases = [
-        ("", "no JSON text"),
         ("{", "no JSON text"),
         (None, "no JSON text"),
-        ("[]", "not in the form that atmosbox writes"),
         ('{"format": 1}', "not in the form that atmosbox writes"),
         ('{"format": 0, "panels": []}', "format 0, and this version of atmosbox reads format 1"),
-        ('{"panels": []}', "format None"),
         ('{"format": 1, "panels": [3]}', "a panel is written as int"),
         ('{"format": 1, "panels": [{"kind": "discs"}]}', "a panel lacks the field 'title'"),
         ('{"format": 1, "panels": [{"kind": "discs", "title": "A", "hue": 1}]}', "unknown field 'hue'"),
         ('{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": "xy"}]}', "lines of a panel"),
-        (
-            '{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": ["xy"]}]}',
-            "a line is written as str",
-        ),
-        (
-            '{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": [{"x": "a"}]}]}',
-            "lacks the field 'y'",
-        ),
-        ('{"format": 1, "panels": [{"kind": "pie", "title": "A"}]}', "must be one of"),
+        ('{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": [{"x": "a"}]}]}', "lacks the field 'y'"),
         ('{"format": 1, "panels": [{"kind": [], "title": "A"}]}', "must be one of"),
     ]
     for text, words in cases:

@@ -22,15 +22,15 @@ def measured(headlines):
     return xr.Dataset({**made, "ledger": 1e-15}, attrs={"names": list(headlines)})
 
 
-def swept(vary, members=4, law=lambda values: (300.0, 1e5), theory=True, settings=None, scene="temperature"):
+def swept(vary, members=4, law=lambda values: (300.0, 1e5)):
     """Return a sweep whose runs scatter about a law of the settings."""
-    grid = plan(scene, vary, members=members, settings=settings)
+    grid = plan("temperature", vary, members=members)
     rng = np.random.default_rng(1)
     rows = {}
     for task in grid.tasks(Path()):
         rows[task.point, task.member] = measured(
             {
-                name: (answer + 0.01 * answer * rng.normal(), 0.01 * answer, answer if theory else None, *words)
+                name: (answer + 0.01 * answer * rng.normal(), 0.01 * answer, answer, *words)
                 for (name, words), answer in zip(LABELS.items(), law(grid.values(task.point)), strict=True)
             }
         )
@@ -77,14 +77,15 @@ SLAB = {
 }
 
 
-def slabs(names=tuple(SLAB), vary="temperature=111.4K,123.8K,136.2K"):
+def slabs():
     """Return a sweep over slabs of liquid with the results of six real runs."""
-    grid = plan("attraction", [vary], members=1, settings={"start": "slab", "density": 1.0})
+    grid = plan(
+        "attraction", ["temperature=111.4K,123.8K,136.2K"], members=1, settings={"start": "slab", "density": 1.0}
+    )
     rows = {}
     for task in grid.tasks(Path()):
         found = {}
-        for name in names:
-            unit, shown, values, errors = SLAB[name]
+        for name, (unit, shown, values, errors) in SLAB.items():
             found[name] = (values[task.point - 1], errors[task.point - 1], None, unit, shown, name)
         rows[task.point, task.member] = measured(found)
     return join(grid, rows, {}, "then: atmosbox sweep")
