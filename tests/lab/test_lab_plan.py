@@ -107,7 +107,7 @@ DRAWN = {
     "condensation": ("elapsed_time", 5.0),
     "lifting-moist": ("parcel_pressure", 300.0),
     "lifting-sounding": ("parcel_pressure", 150.0),
-    "mountains": ("elapsed_time", 7.224427),
+    "mountains": ("elapsed_time", 7.271811),
 }
 """What a class draws its prediction along, and the last value of it in the unit of the graph."""
 
