@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.file.variables import known
+from atmosbox.lab.drawing import drawing
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.kernels.pulling import can_pull
 from atmosbox.lab.lab_box import LabBox, lab_box
-from atmosbox.lab.lab_stage import COLDER, drawing, lab_stage, plain, running_panels
+from atmosbox.lab.lab_stage import COLDER, lab_stage, plain, running_panels
 from atmosbox.lab.memory_image import BASE, Image, image
 from atmosbox.lab.moist_plan import (
     DROP_STATE,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,10 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
 from atmosbox.page.lesson import lesson_of
-from atmosbox.page.page_panel import declared
 from atmosbox.page.word import card_of
-from atmosbox.scene.conversion import phrase, to_si
-from atmosbox.scene.instruments import Environment, wall_laws
+from atmosbox.scene.conversion import phrase
+from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.panels import without_headlines
 from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
@@ -25,13 +23,12 @@ if TYPE_CHECKING:
     from atmosbox.scene.setup import Setup
     from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["COLDER", "drawing", "lab_stage", "plain", "running_panels"]
+__all__ = ["COLDER", "lab_stage", "plain", "running_panels"]
 
 COLDER = 0.5
 """Share of the scale of speeds: if the speeds reach less of it, the page takes another scale."""
 
 _FASTEST = 3.0
-_HANDLES = 5
 _TIME = "elapsed_time"
 
 Array = NDArray[np.float64]
@@ -116,49 +113,6 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
     )
     made.record["card"] = card_of(module.__doc__ or "")
     return made, fast * scale.velocity / math.sqrt(scale.temperature)
-
-
-def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setup) -> dict[str, Any] | None:
-    """Return how a class draws the variable that it predicts; None if no graph shows it from an end known beforehand.
-
-    That is the number of the graph, the label of the curve where there are several, and for the variable and what it
-    is drawn along the name, the unit in a file, and the conversion to the unit shown; with the range of the one, and
-    the five places along the other.
-    """
-    (name, span), *others = wanted.items()
-    ends: dict[str, tuple[float, ...]] = {_TIME: (0.0, setup.duration * setup.scale.time)}
-    ends["height"] = (0.0, float(setup.parcel.length[2]) * setup.scale.length)
-    found = (getattr(instrument, "environment", None) for instrument in setup.instruments)
-    around = [each for each in found if isinstance(each, Environment)]
-    if setup.ends and around:
-        ends["parcel_height"] = tuple(around[0].height(t) for t in ends[_TIME])
-        ends["parcel_pressure"] = ends["environment_pressure"] = tuple(around[0].pressure(t) for t in ends[_TIME])
-    ends |= dict(others)
-    begin, end = _shown(ends[_TIME], {"factor": 1.0 / to_si(1.0, setup.time_unit), "offset": 0.0})
-    ends[_TIME] = begin, end
-    for number, panel in enumerate(panels):
-        axis, other = ("x", "y") if panel["across"] else ("y", "x")
-        lines = [line for line in panel["lines"] if line["role"] == "data"]
-        line = next((each for each in lines if each[axis]["name"] == name and each[other]["name"] in ends), None)
-        if line is None or panel["kind"] not in ("line", "profile") or panel[axis]["log"]:
-            continue
-        measured, along = (
-            line[each] | {"unit": declared(line[each]["name"], setup.time_unit).unit} for each in (axis, other)
-        )
-        first, last = _shown(ends[along["name"]], along)
-        spaced = np.geomspace if panel[other]["log"] else np.linspace
-        return {
-            "graph": number,
-            "label": line["label"] if len(lines) > 1 else "",
-            "measured": measured | {"range": plain(_shown(span, measured))},
-            "along": along | {"places": plain(spaced(first, last, _HANDLES))},
-        }
-    return None
-
-
-def _shown(values: Iterable[float], way: Mapping[str, Any]) -> list[float]:
-    """Return values in the unit in which a panel shows them."""
-    return [value * way["factor"] + way["offset"] for value in values]
 
 
 def _warmest(setup: Setup) -> float:
