@@ -7,7 +7,6 @@ import pytest
 
 from atmosbox.errors import EngineError
 from atmosbox.file.dataset import dataset, headline_variables
-from atmosbox.file.netcdf import read, write
 
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 
@@ -36,21 +35,6 @@ def headline(name="lapse_rate", value=9.7e-3, **fields):
 def test_a_ledger_that_is_not_finite_stops_the_run(value):
     with pytest.raises(EngineError, match=r"kinetic_energy is not finite at \[1\]"):
         dataset({"kinetic_energy": [1.0, value, 2.0]}, TIMES, {})
-
-
-def test_what_is_measured_on_the_way_can_be_drawn_along_the_pressure_and_the_height_of_the_parcel(tmp_path):
-    frames = {
-        "parcel_temperature": [288.0, 280.0, 270.0],
-        "parcel_pressure": [1e5, 9e4, 8e4],
-        "parcel_height": [0.0, 900.0, 1900.0],
-    }
-    made = dataset(frames, TIMES, {"atmosbox_parameters": "{}"})
-    for run in (made, read(write(made, tmp_path / "run.nc"))):
-        assert {"parcel_pressure", "parcel_height"} <= set(run.parcel_temperature.coords)
-        (line,) = run.parcel_temperature.plot(y="parcel_pressure")
-        assert line.get_ydata().tolist() == frames["parcel_pressure"]
-    with pytest.raises(EngineError, match="parcel_pressure is not finite"):
-        dataset({"parcel_pressure": [1e5, np.nan, 8e4]}, TIMES, {})
 
 
 def test_a_headline_becomes_four_numbers_in_si():

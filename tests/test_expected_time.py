@@ -6,7 +6,6 @@ import pytest
 
 from atmosbox.simulation import expected_time as times
 from atmosbox.simulation import runner
-from atmosbox.simulation.accuracy.measured import load
 from atmosbox.simulation.expected_time import expected_time, remember_pace
 
 
@@ -15,27 +14,6 @@ def home(tmp_path, monkeypatch):
     """A separate, empty cache, in which no speed of this computer is known yet."""
     monkeypatch.setattr(times, "cache_home", lambda: tmp_path)
     return tmp_path
-
-
-def expected(scene, engine=None, **settings):
-    return expected_time(runner.prepare(scene, settings, engine=engine))
-
-
-def test_between_and_beyond_what_was_measured_the_cost_grows_as_its_neighbours_do():
-    ways = {
-        way.settings["ascent"]: way.cost
-        for way in load()["lifting-dry"].ways
-        if [*way.settings] == ["ascent"] and way.engine == "exact"
-    }
-    at = {ascent: expected("lifting-dry", ascent=ascent).seconds for ascent in (100.0, 150.0, 200.0)}
-    assert at[100.0] < at[150.0] < at[200.0]
-    assert at[200.0] / at[100.0] == pytest.approx(ways[200.0] / ways[100.0])
-    assert expected("temperature", molecules=1000).seconds == pytest.approx(
-        5.0 * expected("temperature", molecules=200).seconds
-    )
-    assert expected("lifting-dry", ascent=1e6) is None
-    assert expected("lifting-dry", "stepped:delta=0.03") is None
-    assert expected("mountains") is None or "mountains" in load()
 
 
 def test_a_run_tells_the_pace_of_this_computer(home):

@@ -17,7 +17,7 @@ DALTON = 1.66053906892e-27
 def few_frames():
     """Runs have few frames: each is read as the others are."""
     with pytest.MonkeyPatch.context() as patch:
-        cut(patch, {"temperature": (60, 10), "condensation": (40, 10), "atmosphere": (40, 5)})
+        cut(patch, {"temperature": (60, 10), "condensation": (40, 10)})
         yield
 
 

@@ -4,7 +4,6 @@ import importlib.util
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 import xarray as xr
 
@@ -58,16 +57,6 @@ def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
     assert any(line.startswith("temperature at 300 hPa") for line in repr(both).splitlines())
     assert "<pre" in both._repr_html_()
     assert both.figure.axes
-
-
-def test_a_sweep_takes_lists_and_words(tmp_path):
-    swept = ab.sweep(SCENE, {"molecules": [20, 40]}, members=2, jobs=1, duration="2 s", out=tmp_path / "s.nc")
-    assert swept.molecules.values.tolist() == [20, 40]
-    spelled = ab.sweep(SCENE, {"molecules": "20:40:2"}, members=2, jobs=1, duration="2 s")
-    np.testing.assert_array_equal(swept.energy_of_light_discs, spelled.energy_of_light_discs)
-    assert ab.plot(tmp_path / "s.nc").axes
-    starts = ab.sweep("temperature", {"start": ["equal", "maxwell"]}, jobs=1, molecules=50, duration="5 ns")
-    assert starts.start.values.tolist() == ["equal", "maxwell"]
 
 
 # Pages and bars

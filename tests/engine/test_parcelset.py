@@ -121,6 +121,7 @@ def test_a_driven_piston_is_one_constant_piston_after_another():
     assert parcel.work != 0.0
 
 
+@pytest.mark.nightly  # cells that hold lists need other kernels
 @many_events
 def test_many_molecules_in_one_cell_get_a_longer_row():
     random = np.random.default_rng(2)

@@ -285,17 +285,6 @@ def test_the_energy_budget_closes_and_no_molecule_is_outside_by_any_rules(walls,
 # ------------------------------------------------------------------------------------------------ the box
 
 
-@many_steps
-def test_one_at_rest_on_the_floor_stays_there_and_one_that_falls_rises_as_high():
-    box = parcel(
-        [[1, 1, 0.5], [3, 3, 2.5]], np.zeros((2, 3)), dt=0.1, length=(4,) * 3, walls=(P,) * 4 + (S, S), gravity=1.0
-    )
-    for _ in range(400):
-        box.advance(box.time + 0.1)
-        t = (box.time + 2.0) % 4.0 - 2.0
-        assert box.snapshot().position[:, 2] == pytest.approx([0.5, 2.5 - 0.5 * t * t], abs=1e-10)
-
-
 def test_molecules_that_overlap_at_the_start_are_refused():
     x, v = [[0.6, 2, 2], [5.4, 2, 2], [3, 2, 2], [3.6, 2.2, 2]], np.ones((4, 3))
     for walls in ((S,) * 6, (P,) * 6):

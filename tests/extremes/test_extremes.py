@@ -8,7 +8,7 @@ import pytest
 from atmosbox.engine import ParcelSet
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.scene import engines
-from tests.extremes.cases import FAMILIES, Case, Reading, Run, at, hold
+from tests.extremes.cases import FAMILIES, Run, hold
 
 
 @pytest.fixture(autouse=True)
@@ -33,38 +33,6 @@ def nothing_hangs():
 )
 def test_an_engine_is_right_or_refuses_or_is_no_worse_than_known(name, case):
     hold(case, Run(name))
-
-
-def push(run):
-    """Return the force of two molecules that pass each other on a wall."""
-    box = run.advance(at([[3.0, 4, 5], [3.0, 7, 5]], [[0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]])(run), 900.0)
-    return Reading(box.wall_impulse[1] / 900.0, 0.5 / 9.0, 1.0 / 900.0)
-
-
-def late(**change):
-    """Return a snapshot in which something changes at time 1."""
-
-    def snapshot(box):
-        here = ParcelSet.snapshot(box)
-        changed = {name: each(getattr(here, name)) for name, each in change.items()}
-        return here._replace(**changed) if box.time >= 1.0 else here
-
-    return snapshot
-
-
-@pytest.mark.parametrize(
-    ("methods", "why"),
-    [
-        ({"snapshot": late(position=lambda x: x + 11.0)}, "outside"),
-        ({"snapshot": late(position=lambda x: x[[0, 0]])}, "overlap"),
-        ({"ledger": lambda box: 1e-9}, "energy budget"),
-        ({"wall_impulse": property(lambda box: 1.2 * ParcelSet.wall_impulse.fget(box))}, "kind='off'"),
-    ],
-)
-def test_a_broken_engine_fails(methods, why):
-    broken = type("Broken", (ParcelSet,), methods)
-    with pytest.raises(AssertionError, match=why):
-        hold(Case("push", push), Run("exact", lambda options, *arrays, **box: broken(*arrays, **box), limit=0.3))
 
 
 @pytest.mark.parametrize("speed", [1e-49, 1e-13, 1e40])

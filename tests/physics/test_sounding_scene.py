@@ -65,27 +65,6 @@ def test_the_buoyancy_is_that_of_the_weight_of_all_that_the_parcel_holds():
     assert data.parcel_buoyancy.values == pytest.approx(np.asarray(expected), abs=0.002)
 
 
-def test_cape_is_measured_with_the_water_that_the_parcel_holds():
-    found = outcome(molecules=4000, ascent=100)
-    module, data = scenarios.load(SCENE), found.dataset
-    settings = runner.prepare(SCENE, SMALL | {"molecules": 4000, "ascent": 100}).settings
-    true = headline(found, "cape")
-
-    def cape(**changed):
-        other = data.assign(changed)
-        other = other.assign(
-            {name: data[name].copy(data=value) for name, value in module.theory(other, settings).items()}
-        )
-        return next(each for each in module.headlines(other, settings) if each.name == "cape").value
-
-    assert cape() == pytest.approx(true.value, rel=1e-9)
-    # half the vapour makes the parcel heavier by four tenths of a percent at the cloud base; half the liquid lighter
-    assert cape(humidity_mixing_ratio=data.humidity_mixing_ratio * 0.5) < true.value - 80.0
-    lighter = cape(cloud_liquid_water_mixing_ratio=data.cloud_liquid_water_mixing_ratio * 0.5)
-    assert lighter > true.value + 200.0
-    assert cape(parcel_temperature=data.parcel_temperature - 1.0) < true.value - 200.0
-
-
 def test_a_cloud_that_carries_its_water_has_half_the_energy_of_one_that_does_not_weigh():
     module = scenarios.load(SCENE)
     settings = runner.prepare(SCENE, {"molecules": 1_000_000}).settings
