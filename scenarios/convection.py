@@ -553,5 +553,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             Line("elapsed_time", "roll_speed_theory", "linear theory", "theory"),
         ),
         x_label="time", x_unit="min", y_label="speed of the rolls", headlines=("mean_wind_speed",),
+        note="The noise of so few molecules is subtracted: below zero is chance.",
     )  # fmt: skip
     return profile, rolls

@@ -144,7 +144,7 @@ def put_numbers(measure: TextMeasure, readings: Sequence[Reading], look: Theme, 
 
 
 _TALL = ("profile", "discs", "skewt", "atmosphere")
-_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.9, "skewt": 2.0, "atmosphere": 1.1}
+_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.5, "skewt": 2.0, "atmosphere": 1.1}
 _TEXT_LINES = 6  # lines above the axes for which a page has room; it grows for more
 _ROUNDS = 3  # of layout and text: the text needs room, and the room decides where lines break
 # Length of the line samples in a legend, their distance from the text, and the gaps between axes, legend and note, all
