@@ -6,7 +6,7 @@ import base64
 import html
 import io
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -54,9 +54,15 @@ small { color: #566270; }
 
 
 def save_all(
-    folder: Path, *, theme: str, language: str, force: bool, progress: Callable[[float, str], None]
+    folder: Path,
+    *,
+    theme: str,
+    language: str,
+    force: bool,
+    progress: Callable[[float, str], None] = lambda share, name: None,
+    scenes: Collection[str] = (),
 ) -> list[Path]:
-    """Write the page of every scene that can run in one, and ``index.html``; return their paths, the index first.
+    """Write the pages of some scenes, or of all that can run in one, and ``index.html``; return the paths, index first.
 
     Raises
     ------
@@ -73,7 +79,8 @@ def save_all(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(f"{folder} cannot be made ({error.strerror}): give another folder.") from error
-    found = {name: each for name, each in scenarios.summaries().items() if name in SCENES}
+    wanted = set(SCENES) & set(scenes or SCENES)
+    found = {name: each for name, each in scenarios.summaries().items() if name in wanted}
     pages = {name: check_writable(folder / f"{name}-lab.html", force) for name in found}
     index = check_writable(folder / "index.html", force)
     cards = []

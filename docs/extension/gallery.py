@@ -1,8 +1,9 @@
-"""The gallery: of every scene a page that plays, a film and a worksheet, of some a lab, made when the site is built.
+"""The gallery: of every scene a page that plays, a film, a worksheet and the lab, made when the site is built.
 
 A page or a film is a megabyte or two, so none is kept: each is made of a run with few molecules. In the source the
 gallery has the pictures and the commands; on the site each scene has its page and its film as well, which are loaded
-when they are opened, and links to them. The page of a scene that has a lab holds it, too. With the option
+when they are opened, and links to them. The page of a scene holds its lab, too. The labs and their index are the folder
+that `atmosbox lab --all` writes. With the option
 ``-D gallery_scenes=NAME,NAME`` of Sphinx these scenes alone have them, which is quicker.
 """
 
@@ -17,16 +18,7 @@ sys.path[:0] = [] if str(ROOT) in sys.path else [str(ROOT)]
 
 from atmosbox.lab.wasm_module import SCENES  # noqa: E402
 
-NAME = "gallery"
-
-LABS = SCENES | {
-    "temperature": {"molecules": 400},
-    "atmosphere": {"molecules": 1500},
-    "lifting-dry": {"molecules": 1500, "ascent": 400},
-    "diffusion": {"molecules": 3000},
-    "attraction": {"molecules": 400},
-}
-"""The settings of the labs: so few molecules that a phone keeps up."""
+NAME, LABS = "gallery", "labs"
 
 FEW = {
     "temperature": {"molecules": 100, "duration": "4 ns"},
@@ -54,17 +46,15 @@ def make(folder: Path, seconds: float, chosen: list[str]) -> None:
     """Make pages, films of some seconds and worksheets of some scenes, and their labs, in a folder."""
     import atmosbox as ab
     from atmosbox import film, sheet
-    from atmosbox.lab import save_lab
+    from atmosbox.cli.lab_folder import save_all
     from atmosbox.page import save
-    from atmosbox.simulation.preparation import prepare
 
     for name in chosen:
         run = ab.run(name, save_molecules=True, **FEW[name])
         save([run], folder / f"{name}.html", force=True)
         film.save(run, folder / f"{name}.mp4", force=True, seconds=seconds, fps=PICTURES)
         sheet.save(sheet.worksheet(name, {}), folder / f"{name}-sheet.pdf", force=True)
-        if name in LABS:
-            save_lab(prepare(name, LABS[name], engine="exact"), folder / f"{name}-lab.html", force=True)
+    save_all(folder.parent / LABS, theme="auto", language="auto", force=True, scenes=chosen)
 
 
 def scenes(app: Sphinx) -> list[str]:
@@ -77,9 +67,9 @@ def add_links(app: Sphinx, docname: str, source: list[str]) -> None:
     """Put what is made below the heading of each scene, and its lab into its own page."""
     scene = docname.removeprefix("scenes/")
     chosen = scenes(app)
-    if docname != scene and scene in LABS and scene in chosen:
+    if docname != scene and scene in SCENES and scene in chosen:
         heading, _, rest = source[0].partition("\n")
-        lab = _framed(f"../{NAME}/{scene}-lab.html", "Let it run here", f"{scene}, running")
+        lab = _framed(f"../{LABS}/{scene}-lab.html", "Let it run here", f"{scene}, running")
         source[0] = f"{heading}\n\n{lab}\n{rest}"
     if docname != NAME:
         return
@@ -89,7 +79,7 @@ def add_links(app: Sphinx, docname: str, source: list[str]) -> None:
         name = line.removeprefix("## ")
         if name not in chosen or line == name:
             continue
-        lab = f'<a href="{NAME}/{name}-lab.html">let it run</a> · ' if name in LABS else ""
+        lab = f'<a href="{LABS}/{name}-lab.html">let it run</a> · ' if name in SCENES else ""
         lines += ["", f'<p>{lab}<a href="{NAME}/{name}-sheet.pdf">worksheet (PDF)</a></p>', ""]
         lines += [_framed(f"{NAME}/{name}.html", "Play it here", f"{name}, to play"), _film(f"{NAME}/{name}.mp4", name)]
     source[0] = "\n".join(lines)
