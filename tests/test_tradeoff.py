@@ -125,7 +125,7 @@ def run(*words):
 made, once, timed_run.run = [], timed_run.run, run
 repetition.MOST_RUNS = 2
 Checkpoint.__call__ = lambda self, make: self.save(make())  # after every run, and not only after two seconds
-measure("elastic-collisions", ways=DISCS, out=Path("x.nc"))
+measure("elastic-collisions", ways=DISCS, out=Path("x.nc"), budget=600.0)
 """
 
 
@@ -137,13 +137,13 @@ def test_a_tradeoff_that_was_killed_goes_on_to_the_same_errors(tmp_path, runs):
     assert sorted(part.members.values.tolist()) == [1, 2]
     assert save(part, tmp_path / "part.svg").exists()
     with pytest.raises(FileError, match="another tradeoff \\(seed\\)"):
-        measure("elastic-collisions", ways=DISCS, out=tmp_path / "x.nc", seed=2)
+        measure("elastic-collisions", ways=DISCS, out=tmp_path / "x.nc", seed=2, budget=600.0)
     notes = []
-    measure("elastic-collisions", ways=DISCS, out=tmp_path / "x.nc", note=notes.append)
+    measure("elastic-collisions", ways=DISCS, out=tmp_path / "x.nc", note=notes.append, budget=600.0)
     assert runs == [(DISCS[int(part.members.values.argmin())].label, 2)]
     assert "3 runs are saved" in notes[0]
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".nc", ".svg"]
-    found, undisturbed = read(tmp_path / "x.nc"), measure("elastic-collisions", ways=DISCS)
+    found, undisturbed = read(tmp_path / "x.nc"), measure("elastic-collisions", ways=DISCS, budget=600.0)
     assert len(found.attrs["history"].splitlines()) == 2
     for name in ("bias", "bias_se", "noise", "members", "ledger", "missed", "escaped", "theory"):
         assert found[name].values.tobytes() == undisturbed[name].values.tobytes(), name
