@@ -142,3 +142,27 @@ def violations(root):
 
 def test_every_import_keeps_to_the_layers():
     assert violations(ROOT) == []
+
+
+def test_folders_do_not_import_each_other_in_a_circle():
+    below = {name: set(f"{row.parts} {row.lazily}".split()) & set(LAYERS) for name, row in LAYERS.items()}
+    below["version"] -= {"interface", "plot", "sweep"}  # `atmosbox.run` imports them when it is used
+    order = []
+    while ready := [name for name in below if name not in order and below[name] <= {*order, name}]:
+        order += ready
+    assert set(LAYERS) - set(order) <= {"cli", "__main__"}
+
+
+PUBLIC = {"_replace", "_asdict", "_fields", "_make", "_exit", "_get_tick", "_repr_png_"}
+"""Of named tuples, of Python, of matplotlib and of IPython."""
+
+
+def test_outside_the_engine_no_private_attribute_of_another_file_is_used():
+    for path in sorted([*ROOT.glob("atmosbox/**/*.py"), *ROOT.glob("scenarios/**/*.py")]):
+        if path.relative_to(ROOT).parts[:2] != ("atmosbox", "engine"):
+            nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+            used = [node for node in nodes if isinstance(node, ast.Attribute) and node.attr.startswith("_")]
+            own = {node.attr for node in used if getattr(node.value, "id", "") in ("self", "cls")}
+            own |= {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+            found = {node.attr for node in used if not node.attr.endswith("__")} - own - PUBLIC
+            assert found == set(), path
