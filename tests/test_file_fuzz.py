@@ -1,6 +1,7 @@
 """Whatever is in a netCDF file, the result is its content or one sentence, and never a traceback."""
 
 import contextlib
+import json
 import random
 import shutil
 from pathlib import Path
@@ -72,7 +73,7 @@ def other_content(path, draw):
         for _ in range(draw.randrange(2, 5)):  # some of these change nothing
             owner = draw.choice([file, *file.variables.values()])
             names = owner.ncattrs()
-            kind = draw.randrange(4)
+            kind = draw.randrange(5)
             if kind == 0 and names:
                 owner.delncattr(draw.choice(names))
             elif kind == 1 and names:
@@ -86,8 +87,24 @@ def other_content(path, draw):
                     )
                 owner[...] = values
             elif kind == 3:
+                told = [name for name in file.ncattrs() if str(file.getncattr(name)).startswith(("{", "["))]
+                if told:
+                    name = draw.choice(told)
+                    file.setncattr(name, json.dumps(other_json(json.loads(file.getncattr(name)), draw)))
+            else:
                 name = draw.choice(sorted(file.dimensions))
                 file.renameDimension(name, f"other_{name}")
+
+
+def other_json(held, draw):
+    """Return a JSON text with one value in it changed."""
+    if isinstance(held, dict) and held and draw.random() < 0.8:
+        name = draw.choice(sorted(held))
+        return {**held, name: other_json(held[name], draw)}
+    if isinstance(held, list) and held and draw.random() < 0.8:
+        k = draw.randrange(len(held))
+        return [*held[:k], other_json(held[k], draw), *held[k + 1 :]]
+    return draw.choice([None, True, [], {}, -1, 1e300, *ODD_TEXTS[:4], *ODD_TEXTS[6:]])
 
 
 def damaged(files, draw):
@@ -111,6 +128,25 @@ def tried(files, seed):
         for path in Path.cwd().iterdir():
             if path.is_file() and path not in files:
                 path.unlink()
+
+
+def test_nearly_all_cases_change_their_file(files):
+    draw = random.Random(1)
+    changed = [good.read_bytes() != odd.read_bytes() for good, odd in (damaged(files, draw) for _ in range(100))]
+    files[0].with_name("odd.nc").unlink()
+    assert sum(changed) >= 95
+
+
+def test_other_programs_can_append_to_every_kind_of_file(files):
+    for path in files:
+        odd = path.with_name("odd.nc")
+        shutil.copy(path, odd)
+        with netCDF4.Dataset(odd, "r+") as file:
+            file.setncattr("institution", "A school")
+        said = [typed("netCDF files", "check", name) for name in (path.name, "odd.nc")]
+        odd.unlink()
+        assert said[0].exit_code == said[1].exit_code in (0, 3)
+        assert said[0].output.replace(path.name, "odd.nc") == said[1].output
 
 
 @settings(max_examples=60)
