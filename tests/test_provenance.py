@@ -1,10 +1,6 @@
 """Provenance: the attributes of a file that say how it was made."""
 
-import pytest
-import xarray as xr
-
-from atmosbox.errors import FileError
-from atmosbox.file.provenance import global_attributes, history_line, parameters
+from atmosbox.file.provenance import global_attributes, history_line
 
 
 def attributes():
@@ -20,9 +16,3 @@ def test_the_history_has_the_time_and_the_command_as_typed(monkeypatch):
     assert history_line(words) == line
     assert history_line("atmosbox list") == "2023-11-14T22:13:20Z: atmosbox list"
     assert attributes()["date_created"] == "2023-11-14T22:13:20Z"
-
-
-def test_parameters_that_are_damaged_are_refused():
-    for attrs in ({}, *({"atmosbox_parameters": text} for text in ("", "{", "[1, 2]", '"words"', 7))):
-        with pytest.raises(FileError, match="does not say which run it holds"):
-            parameters(xr.Dataset(attrs=attrs))

@@ -1,9 +1,14 @@
-"""The units of a scene fit together."""
+"""The constants, and the units of a scene."""
 
 import pytest
 
 from atmosbox.scene.units import Scale
-from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
+
+
+def test_the_constants_are_those_of_the_si():
+    assert (BOLTZMANN, AVOGADRO, STANDARD_GRAVITY) == (1.380649e-23, 6.02214076e23, 9.80665)
+    assert pytest.approx(8.31446261815324, rel=1e-15) == GAS_CONSTANT
 
 
 def air(weight=1.0):
