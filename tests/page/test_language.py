@@ -86,6 +86,14 @@ def test_all_that_scenes_say_on_a_page_is_translated(language):
     assert said_by_scenes() - set(table) == set()
 
 
+@pytest.mark.parametrize("language", ["de", "es"])
+def test_every_refusal_of_the_box_is_translated(language):
+    refusals = re.findall(r"refuse\(((?!told).*?)\);", SCRIPTS["lab_worker.js"], re.DOTALL)
+    told = {one or other for text in refusals for one, other in re.findall(r'`([^`]+)`|"([^"]+)"', text)}
+    assert len(told) > 9
+    assert {re.sub(r"\$\{[^}]*\}( \$\{[^}]*\})?", "{}", text) for text in told} <= set(words(language)["phrase"])
+
+
 def test_terms_are_explained_that_a_graph_has_and_in_every_language():
     explained = {language: set(words(language)["gloss"]) for language in LANGUAGES[1:]}
     assert explained["en"] <= said_by_scenes()
