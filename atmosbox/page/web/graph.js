@@ -277,7 +277,7 @@ export class Graph {
     mark(context, spot, 0, 1.5 * unit);
     hollow(context, unit);
     context.textAlign = before ? "right" : "left";
-    context.fillText(word("start"), spot[0] + (before ? -8 : 8) * unit, spot[1] + (spot[1] < top + 16 * unit ? 14 : before ? 4 : -6) * unit);
+    context.fillText(word("start"), spot[0] + (before ? -8 : 8) * unit, spot[1] + (spot[1] < top + 16 * unit ? 14 : before ? 0 : -6) * unit);
     context.restore();
   }
 
