@@ -252,7 +252,9 @@ export class Graph {
     const curve = this.curves.find(({ role }) => role === "data"), { guides = [] } = this.held ? this.panel : {};
     context.strokeStyle = context.fillStyle = look().faint;
     context.lineWidth = unit;
+    const asked = this.curves.every(({ role }) => role === "prediction");
     for (const [axis, value, words] of guides) {
+      if (asked && words) continue; // it names a result of theory
       const text = phrase(words), gap = 4 * unit, [x, y] = this.#spot(value, value), upright = axis === "x";
       context.beginPath();
       context.moveTo(...(upright ? [x, top] : [left, y]));
