@@ -184,11 +184,11 @@ export class Graph {
     key.replaceChildren();
     const named = new Set();
     for (const curve of this.curves) {
-      if (named.has(curve.label)) continue;
-      named.add(curve.label);
+      const dashes = curveDash(curve.role, curve.index).join(" "), name = `${curve.label} ${dashes}`;
+      if (named.has(name)) continue;
+      named.add(name);
       const item = document.createElement("span");
       const colour = this.runs > 1 ? look().faint : this.colour(curve);
-      const dashes = curveDash(curve.role, curve.index).join(" ");
       const wide = curve.role === "reference" ? 5 : 2.2;
       item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
         + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
