@@ -576,8 +576,11 @@ def test_a_question_is_answered_in_the_language_that_is_chosen_and_the_box_goes_
     page = shown.page
     shown.ask(type="frames", value=30)
     before = shown.digest()
+    title = page.locator(".graph strong").first
+    assert title.inner_text() == "Temperature"  # its title tells the result
     page.get_by_role("button", name="doubles").click()
-    assert page.locator(".predict .why").inner_text().startswith("No. Pressure is in proportion")
+    assert title.inner_text() == "Molecules become as warm as the walls"
+    assert page.locator(".predict .why").inner_text().startswith("No. Pressure is proportional")
     page.select_option("#language", "de")
     shown.until(lambda: page.locator(".predict .why").inner_text().startswith("Nein. Der Druck ist proportional"))
     assert page.get_by_role("slider", name="Temperatur der Wände").count() == 1

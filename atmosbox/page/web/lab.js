@@ -31,8 +31,8 @@ class Lab {
     const tell = (text) => note(find("notes"), { text });
     this.player = new Player(find("transport"), find("files"), say, tell);
     this.link = new Link(say);
-    this.lesson = new Lesson(find("lesson"), find("tries"), say);
-    this.prediction = new Prediction(say);
+    this.lesson = new Lesson(find("lesson"), find("tries"), say, () => this.prediction.entitle());
+    this.prediction = new Prediction(say, () => this.lesson.answer !== null);
     this.gauges = new Gauges(find("gauges"), find("voice"), tell);
     this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }), tell);
     this.#languages();

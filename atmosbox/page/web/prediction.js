@@ -36,10 +36,11 @@ function smooth(points) {
 }
 
 export class Prediction {
-  // `say(message)` sends a message to the box, which keeps the five values for its link and its file.
-  constructor(say) {
+  // `say(message)` sends a message to the box, which keeps the five values for its link and its file; `answered` tells
+  // whether the question beside the graph has been answered.
+  constructor(say, answered) {
     const asked = new URLSearchParams(location.search).has("predict"); // nothing is shown before it is drawn
-    Object.assign(this, { say, asked, draft: null, buttons: make("span", { className: "choices" }) });
+    Object.assign(this, { say, answered, asked, draft: null, buttons: make("span", { className: "choices" }) });
   }
 
   // A box begins, or the page is written in another language; `values` is what was drawn before.
@@ -101,12 +102,19 @@ export class Prediction {
       this.buttons.replaceChildren(again, ...values ? [button("draw_remove", () => this.#end(null))] : []);
       graph.element.classList.toggle("asked", open);
       graph.element.classList.toggle("predicted", !open && Boolean(values));
-      const { panel } = graph, measured = panel[panel.across ? "x" : "y"];
-      graph.part("strong").textContent = open ? `${word("predict")}: ${this.#named(phrase(measured.label))}` : phrase(panel.title);
+      this.entitle();
       graph.fixed = null;
       if (open) this.#open();
     } else this.buttons.replaceChildren();
     this.graphs.refresh();
+  }
+
+  // Write the title of the graph, which tells the result, only when the question is answered or the curve is drawn.
+  entitle() {
+    if (!this.draw) return;
+    const { panel, part } = this.graph, measured = this.#named(phrase(panel[panel.across ? "x" : "y"].label));
+    if (this.draft) part("strong").textContent = `${word("predict")}: ${measured}`;
+    else part("strong").textContent = this.values || this.answered() ? phrase(panel.title) : `${measured[0].toUpperCase()}${measured.slice(1)}`;
   }
 
   // A name, with that of the curve where there are several.
