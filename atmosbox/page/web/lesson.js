@@ -4,7 +4,7 @@ import { figure, spelled } from "./figure.js";
 import { language, numbers, phrase, word } from "./words.js";
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
-const written = (text) => numbers(phrase(text));
+const written = (text) => numbers(phrase(text)).replace(/(^|[\s(])-(?=\d)/g, "$1−");
 
 // The mean of the last frames before a place, and whether it is near the goal in both halves of them: what only passes
 // the goal on its way is not there.
