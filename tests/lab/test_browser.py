@@ -640,6 +640,30 @@ def test_the_air_around_a_parcel_and_its_start_are_drawn_before_it_moves(lab, sc
     assert page.locator(f".graph.{kind} .key").first.locator("span").all_inner_texts() == curves
 
 
+def _drawn_anew(page):
+    """Return the texts of all graphs, which are drawn again."""
+    page.evaluate("window.texts.clear()")
+    page.click("#theme")
+    page.wait_for_function("window.texts.size > 5")
+    page.wait_for_timeout(400)
+    return page.evaluate("[...window.texts]")
+
+
+def test_named_guides_are_hidden_while_a_prediction_is_drawn_and_once_a_knob_is_turned(lab):
+    page = lab("lifting-moist", SMALL["lifting-moist"][0]).page
+    page.evaluate(KEEPS_TEXTS)
+    assert "cloud base, theory" in _drawn_anew(page)
+    page.get_by_role("button", name="Draw your prediction").click()
+    assert "cloud base, theory" not in _drawn_anew(page)
+    shown = lab("atmosphere", {"molecules": 1000})
+    shown.ask(type="frames", value=2)
+    shown.page.evaluate(KEEPS_TEXTS)
+    for gravity, count in ((9.80665, 3), (1.62, 0), (9.80665, 3)):
+        shown.ask(type="set", name="gravity", value=gravity)
+        shown.digest()  # by then the engine has told the page
+        assert sum(" % below " in text for text in _drawn_anew(shown.page)) == count, gravity
+
+
 def test_profiles_are_drawn_faint_while_a_column_settles(lab):
     settle = build(prepare("atmosphere", {"molecules": 1000})).settle
     shown = lab("atmosphere", {"molecules": 1000})

@@ -15,7 +15,7 @@ export class Graph {
   // `seek` is called with the time at which a graph over time was clicked; `whole` tells that the curves are complete
   // from the start, so that the part after the present time must be veiled.
   constructor(parent, panel, { runs = 1, seek = null, whole = false } = {}) {
-    Object.assign(this, { panel, runs, seek, whole, curves: [], fixed: null, time: null });
+    Object.assign(this, { panel, runs, seek, whole, curves: [], fixed: null, time: null, guided: true });
     this.element = document.createElement("figure");
     this.element.className = `graph ${panel.kind}`;
     this.element.innerHTML = "<figcaption><strong></strong><span class='sentences'></span></figcaption>"
@@ -254,7 +254,7 @@ export class Graph {
     context.lineWidth = unit;
     const asked = this.curves.every(({ role }) => role === "prediction");
     for (const [axis, value, words] of guides) {
-      if (asked && words) continue; // it names a result of theory
+      if (words && (asked || !this.guided)) continue; // it names a result of theory
       const text = phrase(words), gap = 4 * unit, [x, y] = this.#spot(value, value), upright = axis === "x";
       context.beginPath();
       context.moveTo(...(upright ? [x, top] : [left, y]));

@@ -21,6 +21,7 @@ import { language, languages, phrase, speak, spell, story } from "./words.js";
 
 const KEPT = 240; // frames, from which the path of a molecule is drawn
 const LOOK = 200; // ms between two updates of the graphs
+const LEADS = ["altitude", "way"]; // knobs that lead a parcel along its path
 
 const find = (name) => document.getElementById(name);
 
@@ -61,7 +62,7 @@ class Lab {
     else if (told.type === "state") this.state(told);
     else if (told.type === "link") this.link.show(told.link);
     else if (told.type === "controls") {
-      this.controls.show(told.controls);
+      this.control(told.controls);
       this.since = this.numbers?.get("elapsed_time")?.at(-1) ?? 0;
     }
     else if (told.type === "note") {
@@ -97,9 +98,15 @@ class Lab {
     this.caption = showCaption(find("caption"), [{ stage: record, footer }]);
     this.player.begin(record);
     this.state({ seed: record.seed, ...state });
-    this.controls.show(controls ?? []);
+    this.control(controls ?? []);
     document.body.dataset.ready = true;
     this.start(state);
+  }
+
+  // Show the values of the controls. Guides are for those of the start.
+  control(controls) {
+    this.controls.show(controls);
+    this.graphs.guide(controls.every(({ name, value, start }) => value === start || LEADS.includes(name)));
   }
 
   // Start a box that has not run yet, unless the reader's system asks for reduced motion.
