@@ -312,7 +312,7 @@ def test_floor_ceiling_and_gravity_are_turned_apart_and_the_wind_is_drawn(lab):
     assert ceiling == pytest.approx([28.15, 28.15, 73.15])
     assert table["gravity"][[29, 30]] == pytest.approx([9.80665, 25.0])
     assert re.search(r"energy off by [\d.]+ × 10⁻¹[⁴-⁹]$", shown.page.locator("#vitals").inner_text())
-    assert re.fullmatch(r"wind: longest arrow \d+ m/s", shown.page.locator(".wind").inner_text())
+    assert re.fullmatch(r"wind: longest arrow \d+ m s⁻¹", shown.page.locator(".wind").inner_text())
 
 
 def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab):
@@ -576,8 +576,11 @@ def test_a_question_is_answered_in_the_language_that_is_chosen_and_the_box_goes_
     page = shown.page
     shown.ask(type="frames", value=30)
     before = shown.digest()
+    title = page.locator(".graph strong").first
+    assert title.inner_text() == "Temperature"  # its title tells the result
     page.get_by_role("button", name="doubles").click()
-    assert page.locator(".predict .why").inner_text().startswith("No. Pressure is in proportion")
+    assert title.inner_text() == "Molecules become as warm as the walls"
+    assert page.locator(".predict .why").inner_text().startswith("No. Pressure is proportional")
     page.select_option("#language", "de")
     shown.until(lambda: page.locator(".predict .why").inner_text().startswith("Nein. Der Druck ist proportional"))
     assert page.get_by_role("slider", name="Temperatur der Wände").count() == 1
@@ -635,6 +638,30 @@ def test_the_air_around_a_parcel_and_its_start_are_drawn_before_it_moves(lab, sc
     page.click("#theme")  # all graphs are drawn again
     page.wait_for_function("(wanted) => wanted.every((text) => window.texts.has(text))", arg=sorted(texts))
     assert page.locator(f".graph.{kind} .key").first.locator("span").all_inner_texts() == curves
+
+
+def _drawn_anew(page):
+    """Return the texts of all graphs, which are drawn again."""
+    page.evaluate("window.texts.clear()")
+    page.click("#theme")
+    page.wait_for_function("window.texts.size > 5")
+    page.wait_for_timeout(400)
+    return page.evaluate("[...window.texts]")
+
+
+def test_named_guides_are_hidden_while_a_prediction_is_drawn_and_once_a_knob_is_turned(lab):
+    page = lab("lifting-moist", SMALL["lifting-moist"][0]).page
+    page.evaluate(KEEPS_TEXTS)
+    assert "cloud base, theory" in _drawn_anew(page)
+    page.get_by_role("button", name="Draw your prediction").click()
+    assert "cloud base, theory" not in _drawn_anew(page)
+    shown = lab("atmosphere", {"molecules": 1000})
+    shown.ask(type="frames", value=2)
+    shown.page.evaluate(KEEPS_TEXTS)
+    for gravity, count in ((9.80665, 3), (1.62, 0), (9.80665, 3)):
+        shown.ask(type="set", name="gravity", value=gravity)
+        shown.digest()  # by then the engine has told the page
+        assert sum(" % below " in text for text in _drawn_anew(shown.page)) == count, gravity
 
 
 def test_profiles_are_drawn_faint_while_a_column_settles(lab):

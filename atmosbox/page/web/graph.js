@@ -15,7 +15,7 @@ export class Graph {
   // `seek` is called with the time at which a graph over time was clicked; `whole` tells that the curves are complete
   // from the start, so that the part after the present time must be veiled.
   constructor(parent, panel, { runs = 1, seek = null, whole = false } = {}) {
-    Object.assign(this, { panel, runs, seek, whole, curves: [], fixed: null, time: null });
+    Object.assign(this, { panel, runs, seek, whole, curves: [], fixed: null, time: null, guided: true });
     this.element = document.createElement("figure");
     this.element.className = `graph ${panel.kind}`;
     this.element.innerHTML = "<figcaption><strong></strong><span class='sentences'></span></figcaption>"
@@ -184,11 +184,11 @@ export class Graph {
     key.replaceChildren();
     const named = new Set();
     for (const curve of this.curves) {
-      if (named.has(curve.label)) continue;
-      named.add(curve.label);
+      const dashes = curveDash(curve.role, curve.index).join(" "), name = `${curve.label} ${dashes}`;
+      if (named.has(name)) continue;
+      named.add(name);
       const item = document.createElement("span");
       const colour = this.runs > 1 ? look().faint : this.colour(curve);
-      const dashes = curveDash(curve.role, curve.index).join(" ");
       const wide = curve.role === "reference" ? 5 : 2.2;
       item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
         + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
@@ -252,7 +252,9 @@ export class Graph {
     const curve = this.curves.find(({ role }) => role === "data"), { guides = [] } = this.held ? this.panel : {};
     context.strokeStyle = context.fillStyle = look().faint;
     context.lineWidth = unit;
+    const asked = this.curves.every(({ role }) => role === "prediction");
     for (const [axis, value, words] of guides) {
+      if (words && (asked || !this.guided)) continue; // it names a result of theory
       const text = phrase(words), gap = 4 * unit, [x, y] = this.#spot(value, value), upright = axis === "x";
       context.beginPath();
       context.moveTo(...(upright ? [x, top] : [left, y]));
@@ -277,7 +279,7 @@ export class Graph {
     mark(context, spot, 0, 1.5 * unit);
     hollow(context, unit);
     context.textAlign = before ? "right" : "left";
-    context.fillText(word("start"), spot[0] + (before ? -8 : 8) * unit, spot[1] + (spot[1] < top + 16 * unit ? 14 : before ? 4 : -6) * unit);
+    context.fillText(word("start"), spot[0] + (before ? -8 : 8) * unit, spot[1] + (spot[1] < top + 16 * unit ? 14 : before ? 0 : -6) * unit);
     context.restore();
   }
 

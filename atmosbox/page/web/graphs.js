@@ -84,6 +84,11 @@ export class Graphs {
     for (const { graph } of told) graph.say(meansOf(graph.curves, from, graph.panel.y.unit));
   }
 
+  // Show named guides or hide them.
+  guide(shown) {
+    for (const { graph } of this.panels) graph.guided = shown;
+  }
+
   repaint() {
     for (const { graph } of this.panels) graph.repaint();
     this.speeds?.repaint();

@@ -21,6 +21,7 @@ import { language, languages, phrase, speak, spell, story } from "./words.js";
 
 const KEPT = 240; // frames, from which the path of a molecule is drawn
 const LOOK = 200; // ms between two updates of the graphs
+const LEADS = ["altitude", "way"]; // knobs that lead a parcel along its path
 
 const find = (name) => document.getElementById(name);
 
@@ -31,8 +32,8 @@ class Lab {
     const tell = (text) => note(find("notes"), { text });
     this.player = new Player(find("transport"), find("files"), say, tell);
     this.link = new Link(say);
-    this.lesson = new Lesson(find("lesson"), find("tries"), say);
-    this.prediction = new Prediction(say);
+    this.lesson = new Lesson(find("lesson"), find("tries"), say, () => this.prediction.entitle());
+    this.prediction = new Prediction(say, () => this.lesson.answer !== null);
     this.gauges = new Gauges(find("gauges"), find("voice"), tell);
     this.controls = new Controls(find("controls"), (name, value) => say({ type: "set", name, value }), tell);
     this.#languages();
@@ -61,7 +62,7 @@ class Lab {
     else if (told.type === "state") this.state(told);
     else if (told.type === "link") this.link.show(told.link);
     else if (told.type === "controls") {
-      this.controls.show(told.controls);
+      this.control(told.controls);
       this.since = this.numbers?.get("elapsed_time")?.at(-1) ?? 0;
     }
     else if (told.type === "note") {
@@ -97,9 +98,15 @@ class Lab {
     this.caption = showCaption(find("caption"), [{ stage: record, footer }]);
     this.player.begin(record);
     this.state({ seed: record.seed, ...state });
-    this.controls.show(controls ?? []);
+    this.control(controls ?? []);
     document.body.dataset.ready = true;
     this.start(state);
+  }
+
+  // Show the values of the controls. Guides are for those of the start.
+  control(controls) {
+    this.controls.show(controls);
+    this.graphs.guide(controls.every(({ name, value, start }) => value === start || LEADS.includes(name)));
   }
 
   // Start a box that has not run yet, unless the reader's system asks for reduced motion.

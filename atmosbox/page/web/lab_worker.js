@@ -73,7 +73,7 @@ class Box {
   }
 
   controls() {
-    return this.told.controls.map((each) => ({ ...each, value: this.knobs[each.name] }));
+    return this.told.controls.map((each) => ({ ...each, start: each.value, value: this.knobs[each.name] }));
   }
 
   state() {

@@ -4,7 +4,7 @@ import { figure, spelled } from "./figure.js";
 import { language, numbers, phrase, word } from "./words.js";
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
-const written = (text) => numbers(phrase(text));
+const written = (text) => numbers(phrase(text)).replace(/(^|[\s(])-(?=\d)/g, "$1−");
 
 // The mean of the last frames before a place, and whether it is near the goal in both halves of them: what only passes
 // the goal on its way is not there.
@@ -16,9 +16,10 @@ function stands({ target, within }, series, end, frames) {
 }
 
 export class Lesson {
-  // `tries` gets undo and the named settings, `parent` question and task; `say(message)` sends a message to the box.
-  constructor(parent, tries, say) {
-    Object.assign(this, { parent, tries, say, answer: null, told: "", scene: "" });
+  // `tries` gets undo and the named settings, `parent` question and task; `say(message)` sends a message to the box;
+  // `answered` is called when a choice is made.
+  constructor(parent, tries, say, answered) {
+    Object.assign(this, { parent, tries, say, answered, answer: null, told: "", scene: "" });
   }
 
   // Show what a scene offers. A new box begins: its task has not been done yet.
@@ -69,7 +70,10 @@ export class Lesson {
     const answer = (place) => {
       this.answer = place;
       row.replaceChildren(...choices.map((text, number) => {
-        const button = make("button", { type: "button", textContent: written(text), onclick: () => answer(number) });
+        const button = make("button", { type: "button", textContent: written(text), onclick: () => {
+          answer(number);
+          this.answered();
+        } });
         button.setAttribute("aria-pressed", number === place);
         if (place !== null && number === right - 1) button.classList.add("right");
         return button;

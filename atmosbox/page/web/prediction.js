@@ -36,10 +36,11 @@ function smooth(points) {
 }
 
 export class Prediction {
-  // `say(message)` sends a message to the box, which keeps the five values for its link and its file.
-  constructor(say) {
+  // `say(message)` sends a message to the box, which keeps the five values for its link and its file; `answered` tells
+  // whether the question beside the graph has been answered.
+  constructor(say, answered) {
     const asked = new URLSearchParams(location.search).has("predict"); // nothing is shown before it is drawn
-    Object.assign(this, { say, asked, draft: null, buttons: make("span", { className: "choices" }) });
+    Object.assign(this, { say, answered, asked, draft: null, buttons: make("span", { className: "choices" }) });
   }
 
   // A box begins, or the page is written in another language; `values` is what was drawn before.
@@ -47,6 +48,7 @@ export class Prediction {
     const draw = predict?.draw ?? null;
     if (JSON.stringify(draw) !== JSON.stringify(this.draw)) this.draft = null;
     Object.assign(this, { graphs, draw, values, graph: draw && graphs.panels[draw.graph].graph });
+    this.telling = predict ? this.graph ?? graphs.panels[0]?.graph : null; // whose title answers the question
     graphs.drawn = (graph, curves) => this.#added(graph, curves);
     document.querySelector("#lesson .predict .choices")?.after(this.buttons);
     this.#show();
@@ -96,22 +98,29 @@ export class Prediction {
     document.body.classList.toggle("drawing", open);
     this.bar?.remove();
     this.layer?.remove();
+    this.entitle();
     if (draw) {
       const again = button(values ? "draw_again" : "draw", () => this.#start());
       this.buttons.replaceChildren(again, ...values ? [button("draw_remove", () => this.#end(null))] : []);
       graph.element.classList.toggle("asked", open);
       graph.element.classList.toggle("predicted", !open && Boolean(values));
-      const { panel } = graph, measured = panel[panel.across ? "x" : "y"];
-      graph.part("strong").textContent = open ? `${word("predict")}: ${this.#named(phrase(measured.label))}` : phrase(panel.title);
       graph.fixed = null;
       if (open) this.#open();
     } else this.buttons.replaceChildren();
     this.graphs.refresh();
   }
 
+  // Write the title of the graph, which tells the result, only when the question is answered or the curve is drawn.
+  entitle() {
+    if (!this.telling) return;
+    const { panel, part } = this.telling, measured = this.#named(phrase(panel[panel.across ? "x" : "y"].label));
+    if (this.draft) part("strong").textContent = `${word("predict")}: ${measured}`;
+    else part("strong").textContent = this.values || this.answered() ? phrase(panel.title) : `${measured[0].toUpperCase()}${measured.slice(1)}`;
+  }
+
   // A name, with that of the curve where there are several.
   #named(text) {
-    return this.draw.label ? `${text} (${phrase(this.draw.label)})` : text;
+    return this.draw?.label ? `${text} (${phrase(this.draw.label)})` : text;
   }
 
   // Put five handles on the graph, and over it what to do.
