@@ -75,7 +75,8 @@ def _in_kelvin(panel: Panel) -> Panel:
     """Return a panel with temperatures in kelvin, unless it has marks, which are in its own units."""
     if panel.start or panel.guides or panel.x_limits or panel.y_limits:
         return panel
-    return replace(panel, **{axis: "K" for axis in ("x_unit", "y_unit") if getattr(panel, axis) == "degC"})
+    along, up = ("K" if unit == "degC" else unit for unit in (panel.x_unit, panel.y_unit))
+    return replace(panel, x_unit=along, y_unit=up)
 
 
 def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tuple[Stage, float]:

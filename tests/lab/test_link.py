@@ -290,7 +290,7 @@ def test_a_prediction_is_drawn_by_hand_and_by_keyboard_and_goes_into_link_and_ta
     shown = lab("temperature", {"molecules": 50})
     page, button = shown.page, shown.page.get_by_role("button", name="Draw your prediction")
     button.click()
-    assert page.get_by_role("slider", name="time 0.25 ns").get_attribute("aria-valuetext") == "−10 °C"
+    assert page.get_by_role("slider", name="time 0.25 ns").get_attribute("aria-valuetext") == "−50 °C"
     assert page.get_by_role("button", name="Done").is_disabled()  # nothing was drawn
     drag(page, page.locator(".handle").first, -60)
     last = page.get_by_role("slider", name="time 1 ns")
@@ -299,25 +299,25 @@ def test_a_prediction_is_drawn_by_hand_and_by_keyboard_and_goes_into_link_and_ta
     last.press("ArrowLeft")
     last.press("ArrowRight")
     first, *others = values_of(page)
-    assert others == ["−10 °C", "−10 °C", "−10 °C", "12 °C"]  # steps of 2 degrees
+    assert others == ["−50 °C", "−50 °C", "−50 °C", "5 °C"]  # steps of 5 degrees
     low = float(first.removesuffix(" °C").replace("−", "-"))
-    assert low < -20.0
+    assert low < -60.0
     page.get_by_role("button", name="Done").click()
     assert page.locator(".key", has_text="your prediction").count() == 1
     shown.ask(type="frames", value=9)
     shown.ask(type="reset", seed=7)  # it stays when the box begins again
     shown.ask(type="frames", value=9)
     link = link_of(shown)
-    assert f"&predict=air_temperature:{low:g},-10,-10,-10,12&frames=9&end" in link
+    assert f"&predict=air_temperature:{low:g},-50,-50,-50,5&frames=9&end" in link
     replayed(link)
     about, _ = shown.table()
     place = about.index("# predicted: elapsed_time [ns], air_temperature [K]")
     told = [tuple(map(float, line[2:].split(", "))) for line in about[place + 1 : place + 6]]
-    assert told == [(0.0, round(low + 273.15, 2)), (0.25, 263.15), (0.5, 263.15), (0.75, 263.15), (1.0, 285.15)]
+    assert told == [(0.0, round(low + 273.15, 2)), (0.25, 223.15), (0.5, 223.15), (0.75, 223.15), (1.0, 278.15)]
     shown.close()
     again = lab("temperature", {"molecules": 50}, link)
     assert again.page.locator(".key", has_text="your prediction").count() == 1
-    assert link_of(again).partition("&predict=")[2].startswith(f"air_temperature:{low:g},-10,-10,-10,12&")
+    assert link_of(again).partition("&predict=")[2].startswith(f"air_temperature:{low:g},-50,-50,-50,5&")
     again.page.select_option("#language", "de")  # which writes the page again
     again.page.get_by_role("button", name="Neu zeichnen").click()
     assert values_of(again.page) == [first, *others]
@@ -327,7 +327,7 @@ def test_a_prediction_is_drawn_by_hand_and_by_keyboard_and_goes_into_link_and_ta
     assert again.page.locator(".key", has_text="your prediction").count() == 0
     assert "predict" not in link_of(again)
     again.close()
-    for wrong in (",12&", ",12,13&"), (",12&", ",,12&"), ("air_temperature:", "air_pressure:"):
+    for wrong in (",5&", ",5,13&"), (",5&", ",,5&"), ("air_temperature:", "air_pressure:"):
         refused = lab("temperature", {"molecules": 50}, link.replace(*wrong))
         assert "The prediction of this link cannot be read" in refused.note()
         refused.close()
