@@ -395,7 +395,7 @@ def run(
     pressure [hPa]: pressure at the ground; 300 hPa to 1100 hPa
     top_pressure [hPa]: pressure at which the ascent ends; 100 hPa to 1000 hPa
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
-    rain: whether it rains when the cloud holds too much; on or off
+    rain: whether it rains; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
     area: area of all droplets, divided by that of the floor; 0.1 to 100
@@ -429,7 +429,7 @@ def run(
     sounding: file of a sounding, or weisman-klemp for the analytic one; any text
     molecules: number of molecules in the parcel; 200 to 1000000
     top_pressure [hPa]: pressure at which the ascent ends; 50 hPa to 900 hPa
-    rain: whether it rains when the cloud holds too much; on or off
+    rain: whether it rains; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
     area: area of all droplets, divided by that of the floor; 0.1 to 100
@@ -473,7 +473,7 @@ def run(
     valley [km]: height of the valley between; 0 km to 6 km
     second [km]: height of the second mountain; 0.1 km to 6 km
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
-    rain: whether it rains when the cloud holds too much; on or off
+    rain: whether it rains; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     travel: duration of the crossing, in mean free times at its start; 20 to 1000000
     area: area of all droplets, divided by that of the floor; 0.1 to 100

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +13,7 @@ from atmosbox.cli.application import command, typed
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, PhysicsError
+from atmosbox.errors import AtmosboxError, FileError, PhysicsError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
@@ -217,8 +218,11 @@ def _say_interrupted(
         return
     part = checkpoint.part
     frames = int(stop.outcome.dataset.sizes.get("elapsed_time", 0))
+    from atmosbox.plot.run_figure import panels_of
+
     kept = f"stopped: {frames} complete frames are kept in {part}"
-    if frames > 1:
+    with contextlib.suppress(FileError):  # of too few frames there is no figure
+        panels_of(stop.outcome.dataset)
         kept += f"; to see them: {next_command('plot', part)}"
     tell(kept)
     tell(f"to go on: {next_command('run --resume', part)}")
