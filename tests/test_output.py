@@ -186,7 +186,7 @@ def test_no_function_that_saves_replaces_a_file_unasked(tmp_path):
         path = tmp_path / f"mine.{ending}"
         path.write_text("mine")
         with pytest.raises(FileError, match=r"exists already: add force=True"):
-            save(None, path)
+            save(xr.Dataset(), path)
         assert path.read_text() == "mine"
 
 

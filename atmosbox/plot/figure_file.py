@@ -69,22 +69,17 @@ def save(
     Traceback (most recent call last):
     atmosbox.errors.SettingError: format = gif is unknown: give a file name or format of png, svg or pdf.
     """
-    return write(
-        partial(drawn, dataset, theme, with_box=with_box), [dataset], "", path, format, theme=theme, force=force
-    )
+    title, drawing = str(dataset.attrs.get("title", "atmosbox")), partial(drawn, dataset, theme, with_box=with_box)
+    return write(drawing, [dataset], title, path, format, theme=theme, force=force)
 
 
 def write(
     draw: Callable[[], Figure], runs: Sequence[xr.Dataset], title: str, path: AnyPath, format: str | None, *,
     theme: str, force: bool,
 ) -> Path:  # fmt: skip
-    """Write a figure of some runs into a file, as `save` does; it is drawn once it is known that it can be written.
-
-    Without a title, that of the first run is taken.
-    """
+    """Write a figure of some runs into a file, as `save` does; it is drawn once it is known that it can be written."""
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    title = title or str(runs[0].attrs.get("title", "atmosbox"))
     parameters = "; ".join(str(dataset.attrs.get("atmosbox_parameters", "")) for dataset in runs)
     write_whole(path, render(draw(), kind, theme, title=title, parameters=parameters))
     return path

@@ -27,7 +27,7 @@ def warm_and_cold(found: Findings) -> None:
     names = naming(runs, [Path(file).stem for file in files])
     table = "\n".join(comparison_lines(files, names, compared(runs), 100))
     found.text(f"```console\n$ atmosbox compare cold.nc warm.nc\n{table}\n```")
-    found.figure(drawn(runs, names, "notes")[0], "compared", 115)
+    found.figure(drawn(runs, names, "notes"), "compared", 115)
 
 
 def browser_of(playwright):
