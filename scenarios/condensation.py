@@ -241,7 +241,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headline="mean_water_vapor_partial_pressure",
             theory="saturation, prescribed",
             start=begun,
-            note="Then it fluctuates about it by chance.",
+            note="Then the vapour pressure fluctuates by chance.",
         ),
         over_time(
             "Then as many condense as evaporate",
@@ -252,9 +252,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             parts=PARTS,
             headline="mean_condensation_rate",
             theory="theory",
-            note="While vapour condenses, its heat warms the liquid, and more evaporates."
-            if settings.humidity > 100.0
-            else "",
+            note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
         ),
         *((grown,) if settings.drops else ()),
     )
