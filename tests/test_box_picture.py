@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from PIL import Image
-from typer.testing import CliRunner
 
-from atmosbox.cli import app
 from atmosbox.file.molecules import Molecules, molecules
-from atmosbox.file.netcdf import write
 from atmosbox.plot import figure_with_box
 from atmosbox.plot.box_picture import BoxPicture
 from atmosbox.plot.theme import find
@@ -72,11 +68,3 @@ def test_the_box_is_drawn_at_the_start_half_way_and_at_the_end_over_all_panels(r
     lowest = min(axes.get_position().y0 for axes in boxes)
     assert all(axes.get_position().y1 < lowest for axes in panels)
     assert "grey lid: piston" in drawn.get_supxlabel()
-
-
-def test_the_command_draws_the_box(runs, tmp_path):
-    full = write(runs["lifting-dry"], tmp_path / "full.nc")
-    made = CliRunner().invoke(app, ["plot", str(full), "--with-box", "--out", str(tmp_path / "box.png")])
-    assert made.exit_code == 0, made.output
-    with Image.open(tmp_path / "box.png") as picture:
-        assert picture.height > 0.9 * picture.width

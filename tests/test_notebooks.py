@@ -17,6 +17,10 @@ ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 
+OWN_KERNELS = {"the-dry-adiabat"}
+"""Notebooks of molecules that do not rotate."""
+
+
 class Small:
     """The package as a notebook sees it, whose boxes are small and whose ascents are fast."""
 
@@ -45,7 +49,11 @@ def cells(path, kind):
     return ["".join(cell["source"]) for cell in found if cell["cell_type"] == kind]
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=pytest.mark.nightly if path.stem in OWN_KERNELS else ()) for path in NOTEBOOKS],
+    ids=lambda path: path.stem,
+)
 def test_all_cells_run_and_show_their_last_value(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = {"ab": Small()}

@@ -190,15 +190,6 @@ def test_curves_differ_by_more_than_their_colour(drawings):
         assert len(set(looks)) == len(looks)
 
 
-def test_a_part_of_a_variable_can_be_drawn():
-    line = Line("elapsed_time", "heat[z_high]", "ceiling")
-    heat = variable(("elapsed_time", "wall"), [[1.0, 2.0], [3.0, 4.0]], "J")
-    run = small([280.0, 290.0], Panel("line", "Heat", (line,), "time", "heat"), heat=heat)
-    for labels in (["z_low", "z_high"], np.array([b"z_low", b"z_high"])):
-        axes = plot.figure(run.assign_coords(wall=labels)).axes[0]
-        assert axes.lines[0].get_ydata().tolist() == [2.0, 4.0]
-
-
 @pytest.mark.parametrize("scale", ["linear", "log"])
 def test_gaps_single_frames_and_constants_can_be_drawn(tmp_path, scale):
     panel = Panel("line", "Temperature", (TIME,), "time", "temperature", y_scale=scale)

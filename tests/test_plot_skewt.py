@@ -92,16 +92,6 @@ def legend_texts(axes):
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def test_pressure_falls_upward_on_a_logarithmic_axis_and_isotherms_lean_to_the_right(drawings):
-    axes = drawings["notes"].axes[0]
-    assert axes.get_yscale() == "log"
-    bottom, top = axes.get_ylim()
-    assert bottom > 1000.0 > 150.0 > top
-    for temperature in (-40.0, 0.0, 20.0):
-        low, high = axes.transData.transform([(temperature, 1000.0), (temperature, 200.0)])
-        assert (high - low)[0] / (high - low)[1] == pytest.approx(np.tan(np.radians(30.0)))
-
-
 def test_cape_is_shaded_between_lfc_and_el_where_the_parcel_is_warmer_and_cin_below(run, drawings):
     axes = drawings["notes"].axes[0]
     cape, cin = areas(axes)

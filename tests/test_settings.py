@@ -151,7 +151,7 @@ def test_what_is_no_value_is_refused_with_the_range_and_a_value_that_is_allowed(
             parameter.parse(part.value)
 
 
-def test_a_bare_temperature_that_can_only_be_in_kelvin_is_told_to_be_askedin_kelvin():
+def test_a_bare_temperature_that_can_only_be_in_kelvin_is_told_to_be_given_in_kelvin():
     for value, kelvin in [("300", ["300K"]), (273.5, ["273.5K"]), ("300 degC", []), ("500", [])]:
         with pytest.raises(SettingError) as refused:
             WARM.parse(value)

@@ -4,11 +4,8 @@ import base64
 import functools
 import gzip
 import io
-import os
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -199,18 +196,6 @@ def test_the_answers_tick_the_right_prediction_and_the_students_sheet_none(answe
     text = blank("elastic-collisions").text
     assert "- [ ] 4.5 times" in text
     assert "[x]" not in text
-
-
-def test_the_same_sheet_gives_the_same_bytes(tmp_path):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONHASHSEED": "7", "TZ": "Asia/Tokyo"}
-    done = subprocess.run(
-        [sys.executable, "-m", "atmosbox", "sheet", "temperature", "--out", "1.pdf"],
-        cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8", check=False,
-    )  # fmt: skip
-    assert (done.returncode, done.stdout) == (0, "1.pdf\n")
-    first = (tmp_path / "1.pdf").read_bytes()
-    assert pdf(sheets.worksheet("temperature")).content == first
-    assert str(tmp_path).encode() not in first
 
 
 def test_a_scene_without_words_gets_a_sheet_from_its_card_and_headlines(own):

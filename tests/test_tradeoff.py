@@ -97,6 +97,41 @@ def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
     assert scenarios.load(scene).Settings.from_user(json.loads(way.settings.item())).changed() == chosen.way.settings
 
 
+class Clock:
+    """A clock that moves only with the simulated work, and the runs that use it.
+
+    ``building`` and ``running`` are seconds by way; a run calls its watch a hundred times.
+    """
+
+    def __init__(self, budget, building, running):
+        self.now, self.log, self.building, self.running = 0.0, [], building, running
+        self.results = [[] for _ in running]
+        self.said = repetition.repeat(budget, self.results, self.run, clock=lambda: self.now)
+
+    def run(self, k, watch):
+        self.log.append(k)
+        watch(0.0, "compiling the engine, once")
+        self.now += self.building[k]
+        for share in np.linspace(0.0, 1.0, 101):
+            watch(share, "running")
+            self.now += self.running[k] / 100.0
+        return self.now
+
+    @property
+    def counts(self):
+        return [len(done) for done in self.results]
+
+
+def test_the_budget_is_kept_and_what_fits_is_run():
+    # the second takes more than its share at first, the third is built for longer than it runs, the fourth never fits
+    watched = Clock(60.0, [0.0, 0.0, 5.0, 0.0], [1.0, 30.0, 0.5, 500.0])
+    assert watched.now <= 60.0
+    assert watched.counts[1] == 1
+    assert watched.counts[0] >= 1 <= watched.counts[2]
+    assert watched.counts[3] == 0
+    assert watched.said == ["", "", "", "left out: one run takes about 500 s"]
+
+
 def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(scenarios.load("lifting-dry"), "ladder", QUICK, raising=False)

@@ -203,7 +203,7 @@ FIXED = ("elastic-collisions", "convection")
 @pytest.mark.parametrize(
     ("scene", "settings", "frames"),
     [
-        pytest.param(scene, *case, marks=pytest.mark.nightly if scene in ALIKE else ())
+        pytest.param(scene, *case, marks=pytest.mark.nightly if scene in ALIKE or case is SMALL["nuclei"] else ())
         for cases in (SMALL, BESIDE)
         for scene, case in cases.items()
     ],

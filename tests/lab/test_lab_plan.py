@@ -25,7 +25,7 @@ from atmosbox.simulation.runner import execute
     [
         ("temperature", {}),
         ("temperature", {"molecules": 50, "temperature": "300 K", "start": "equal", "seed": 7}),
-        ("lifting-dry", {"molecules": 200, "rotation": False, "ascent": 12.5}),
+        ("lifting-dry", {"molecules": 200, "temperature": 10.0, "ascent": 12.5}),
         ("atmosphere", {"molecules": 5500, "start": "equilibrium"}),
     ],
 )

@@ -13,7 +13,10 @@ from atmosbox.simulation.preparation import prepare
         ("condensation", {"molecules": 500, "drops": 3}, None, "DropSizes"),
         ("attraction", {"start": "slab", "density": 1.0}, None, "Slab"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
-        ("atmosphere", {"molecules": 1000, "gravity": 100, "height": 1000}, "exact", "start=.equilibrium"),
+        pytest.param(
+            *("atmosphere", {"molecules": 1000, "gravity": 100, "height": 1000}, "exact", "start=.equilibrium"),
+            marks=pytest.mark.nightly,  # its cells have no rows, which no other test needs
+        ),
     ],
 )
 def test_a_box_without_a_module_names_the_reason_and_the_way_out(tmp_path, scene, settings, engine, reason):

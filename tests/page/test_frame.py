@@ -36,12 +36,6 @@ def test_a_frame_says_where_everything_is_and_how_fast():
     np.testing.assert_array_equal(wet, drops)
 
 
-def test_a_molecule_without_a_place_is_marked_and_nothing_warns():
-    position = np.array([[0.5, 0.5, 0.5], [np.nan, np.nan, np.nan]])
-    *_, state, _ = read(encode(0, 0.0, np.ones(3), position, np.array([1.0, np.nan]), 2.0, NO_DROPS))
-    assert state.tolist() == [0, 1]
-
-
 def test_a_large_run_is_thinned_to_its_share_of_the_page():
     for molecules in [1, 300, 4999, 30_000, 1_000_000]:
         for frames in [1, 240, 1000, 1_000_000]:

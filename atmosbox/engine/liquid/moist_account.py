@@ -106,10 +106,11 @@ class MoistAccount(Parcel):
         >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
         >>> liquid = Pool(water, number=5, kT=1.0)
         >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)
-        >>> box.set_open_pool(0.0)
-        >>> box.advance(300.0)
-        >>> box.evaporated, box.liquid
-        (0, 5)
+        >>> box.sticking
+        1.0
+        >>> box.set_open_pool(0.25)
+        >>> box.sticking
+        0.25
         """
         if not isinstance(self._liquid, Pool):
             raise RefusedError("the liquid of this box is not a pool, and only a pool can be covered: make it a Pool")
