@@ -17,7 +17,7 @@ from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["lab_data", "lab_text", "save_lab"]
 
-_MOST_BYTES = 240_000
+_MOST_BYTES = 234_000
 """Largest size of the module and the starts of a page, compressed [bytes]: the page then stays below 1.5 MB."""
 
 
