@@ -36,7 +36,7 @@ from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.trade import tradeoff  # noqa: E402
 from atmosbox.trade.timed_run import PROFILES  # noqa: E402
 
-TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
+TABLE = ROOT / "atmosbox" / "simulation" / "accuracy.json"
 CURVES = set(PROFILES) - {"parcel_temperature"}
 """Curves that the table leaves out. That of a parcel is compared with the textbook's adiabat, and tells what a fast
 ascent costs; the theory of its headlines includes that."""

@@ -20,7 +20,6 @@ from atmosbox.scene import engines
 from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, parse
-from atmosbox.simulation.accuracy import cheapest as cheapest_of
 from atmosbox.trade import timed_run
 
 
@@ -53,7 +52,7 @@ TABLES = {
 @pytest.fixture
 def hand_made(monkeypatch):
     """Replace the table that comes with atmosbox by a hand-made one."""
-    monkeypatch.setattr(cheapest_of, "load", lambda: TABLES)
+    monkeypatch.setattr(accuracy, "load", lambda: TABLES)
 
 
 def command(*words):
@@ -95,7 +94,7 @@ def test_what_is_no_accuracy_is_refused_with_what_to_type():
 # What is picked
 
 
-def test_the_cheapest_way_within_the_accuracy_is_picked():
+def test_the_cheapest_way_within_the_accuracy_is_picked(hand_made):
     cases = [
         ("3K", "stepped:applet,delta=0.01", {"duration": 1.0}),
         ("2.5K", "exact", {"duration": 1.0}),  # the bias counts: sqrt(2.5² + 0.5²) K is more
@@ -108,7 +107,7 @@ def test_the_cheapest_way_within_the_accuracy_is_picked():
         ("reference", "exact", {}),
     ]
     for target, engine, settings in cases:
-        picked = choose("temperature", target, tables=TABLES)
+        picked = choose("temperature", target)
         assert (picked.way.engine, picked.way.settings, picked.met) == (engine, settings, True)
 
 
@@ -126,7 +125,7 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
     result = command(*words, "--json")
     assert result.exit_code == 0, result.output
     made = json.loads(result.stdout)
-    picked = choose("temperature", target, tables=TABLES)
+    picked = choose("temperature", target)
     told = made["accuracy"]
     assert (told["wish"], told["engine"], made["engine"]) == (target, picked.way.engine, picked.way.engine)
     assert set(told["differs"]) == {"duration", "molecules"}
@@ -161,7 +160,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     errors["mean_pressure"] = ExpectedError("1", 0.01, 0.002, 0.05, 1e5)
     known = Measured("stepped:applet,delta=0.01", settings, 0.1, 8, errors)
     tables = {"temperature": Table(("duration", "molecules"), LABELS, (known,))}
-    monkeypatch.setattr(cheapest_of, "load", lambda: tables)
+    monkeypatch.setattr(accuracy, "load", lambda: tables)
     outcome = runner.execute(runner.prepare("temperature", settings, engine="stepped:applet,delta=0.01"))
     found = {one.name: one for one in outcome.headlines}
     assert (found["mean_temperature"].bias, found["mean_temperature"].bias_se) == (-3.0, 0.5)

@@ -5,6 +5,7 @@ import warnings
 
 import pytest
 
+import atmosbox
 from atmosbox.engine import CoarseStepWarning
 from atmosbox.engine.core.energy_budget import GIVEN, STORES
 from atmosbox.errors import SettingError, UnknownSettingError
@@ -46,7 +47,7 @@ def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
 
 
 def test_a_file_knows_its_engine_also_one_of_an_earlier_version():
-    made = runner.run("elastic-collisions", duration="1 s", engine="stepped:applet,delta=0.005")
+    made = atmosbox.run("elastic-collisions", duration="1 s", engine="stepped:applet,delta=0.005")
     assert str(used(made)) == "stepped:applet,delta=0.005"
     assert used(made).ideal is False
     assert choose("dsmc").ideal is True
@@ -135,6 +136,6 @@ def test_a_term_that_is_left_out_of_the_budget_is_found():
 
 def test_a_file_of_an_engine_names_its_source_and_the_energy_of_its_scheme():
     for engine, source in (("dsmc", True), ("exact", False)):
-        made = runner.run("atmosphere", engine=engine, molecules=300, duration=5)
+        made = atmosbox.run("atmosphere", engine=engine, molecules=300, duration=5)
         assert "numerical_heat" not in made
         assert ("10.1063/1.869674" in made.attrs.get("references", "")) == source

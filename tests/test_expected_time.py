@@ -4,15 +4,14 @@ import json
 
 import pytest
 
-from atmosbox.simulation import expected_time as times
-from atmosbox.simulation import runner
+from atmosbox.simulation import compilation, runner
 from atmosbox.simulation.expected_time import expected_time, remember_pace
 
 
 @pytest.fixture(autouse=True)
 def home(tmp_path, monkeypatch):
     """A separate, empty cache, in which no speed of this computer is known yet."""
-    monkeypatch.setattr(times, "cache_home", lambda: tmp_path)
+    monkeypatch.setattr(compilation, "cache_home", lambda: tmp_path)
     return tmp_path
 
 

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import atmosbox
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.simulation import runner
 from atmosbox.sweep import plan, sweep
@@ -44,8 +45,8 @@ def files(tmp_path_factory):
         patch.chdir(place)
         patch.setattr(runner, "_BREATH", 0.0)
         cut(patch, {"temperature": (60, 10), "elastic-collisions": (60, 20)})
-        runner.run("temperature", molecules=50, duration="0.1 ns", save_molecules=True, out="molecules.nc")
-        runner.run("lifting-dry", molecules=50, ascent=30.0, save_molecules=False, out="lift.nc")
+        atmosbox.run("temperature", molecules=50, duration="0.1 ns", save_molecules=True, out="molecules.nc")
+        atmosbox.run("lifting-dry", molecules=50, ascent=30.0, save_molecules=False, out="lift.nc")
         prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
         with pytest.raises(runner.Interrupted):
             runner.execute(prepared, checkpoint=Checkpoint("half.nc"), progress=stop)

@@ -14,6 +14,7 @@ import netCDF4
 import numpy as np
 import pytest
 
+import atmosbox
 from atmosbox import __version__, scenarios
 from atmosbox.errors import FileError
 from atmosbox.file.checkpoint import Checkpoint
@@ -239,7 +240,7 @@ def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
 
 
 def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
-    runner.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
+    atmosbox.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
     assert "done.nc is finished: type atmosbox run --from" in refused("run", "--resume", tmp_path / "done.nc")
     with netCDF4.Dataset(part) as file:
         whole = np.asarray(file.variables["atmosbox_state"][:])

@@ -12,7 +12,7 @@ from atmosbox.cli.application import command
 from atmosbox.cli.output_name import chosen, for_scene
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
-from atmosbox.simulation.replay import check_nothing_changes
+from atmosbox.simulation.link import check_nothing_changes
 from atmosbox.text.progress import progress
 
 

@@ -36,7 +36,7 @@ def tables(dataset: xr.Dataset) -> dict[str, bytes]:
 
     Examples
     --------
-    >>> from atmosbox.simulation.runner import run
+    >>> from atmosbox import run
     >>> made = tables(run("elastic-collisions", duration="2 s"))
     >>> made["headlines"].decode().splitlines()[0]
     'name,what it is,value,standard error,theory,unit'

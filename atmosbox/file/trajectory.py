@@ -85,7 +85,7 @@ def extended_xyz(dataset: xr.Dataset) -> bytes:
 
     Examples
     --------
-    >>> from atmosbox.simulation.runner import run
+    >>> from atmosbox import run
     >>> lines = extended_xyz(run("elastic-collisions", duration="2 s", molecules=2)).decode().splitlines()
     >>> lines[0], lines[1].partition(" Properties=")[2].split()[0]
     ('2', 'species:S:1:pos:R:3:velo:R:3:mass:R:1:radius:R:1:id:I:1')

@@ -91,23 +91,25 @@ def run(
     atmosbox.errors.UnitError: molecules = 0.5 is not whole, but a whole number from 50 to 1000000 is wanted:
     give molecules=4000.
     """
+    from atmosbox.errors import Command, UnknownSceneError
+    from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.interface.run_dataset import as_run
-    from atmosbox.simulation.runner import run as start
+    from atmosbox.simulation import runner
 
+    given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
+    if replay is not None:
+        runner.check_nothing_changes("a run that is replayed", given)
+        prepared = runner.replayed(replay, scene, save_molecules=save_molecules)
+        given = {"replay": replay}
+    elif scene is None:
+        raise UnknownSceneError("No scene is given", Command("list"), " to see all")
+    else:
+        prepared = runner.prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=save_molecules)
+    checkpoint = None if out is None else Checkpoint(out, force=force)
+    words = [] if scene is None else [repr(str(scene))]
+    command = f"atmosbox.run({', '.join([*words, *(f'{name}={value!r}' for name, value in given.items())])})"
     with progress_bar("replay" if scene is None else os.fspath(scene), progress) as show:
-        return as_run(
-            start(
-                scene,
-                replay=replay,
-                out=out,
-                force=force,
-                progress=show,
-                engine=engine,
-                accuracy=accuracy,
-                save_molecules=save_molecules,
-                **settings,
-            )
-        )
+        return as_run(runner.execute(prepared, checkpoint=checkpoint, progress=show, command=command).dataset)
 
 
 def resume(
@@ -151,11 +153,19 @@ def resume(
     Traceback (most recent call last):
     atmosbox.errors.FileError: no such file.part.nc does not exist: check the name and the folder.
     """
+    from atmosbox.file.checkpoint import Checkpoint
+    from atmosbox.file.output_path import whole_path
     from atmosbox.interface.run_dataset import as_run
-    from atmosbox.simulation.runner import resume as go_on
+    from atmosbox.simulation import runner
+    from atmosbox.simulation.restart import read_state
 
+    restart = read_state(os.fspath(path))
+    prepared = runner.prepared_again(restart, scene)
+    checkpoint = Checkpoint(whole_path(path) if out is None else out, force=force)
+    command = f"atmosbox.resume({os.fspath(path)!r})"
     with progress_bar(os.fspath(path), progress) as show:
-        return as_run(go_on(path, scene=scene, out=out, force=force, progress=show))
+        done = runner.execute(prepared, checkpoint=checkpoint, progress=show, command=command, restart=restart)
+        return as_run(done.dataset)
 
 
 def open(path: str | os.PathLike[str]) -> RunDataset:

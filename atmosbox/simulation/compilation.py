@@ -9,15 +9,17 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
 
-__all__ = ["cache_home", "compile_kernels", "compiled_here", "expected_seconds", "told"]
+__all__ = ["cache_home", "compile_kernels", "compiled_here", "expected_seconds", "remember", "remembered", "told"]
 
 _USUAL = 15.0  # seconds, if this machine has not compiled the scene yet
 _BREATH = 0.2
 _NEVER_DONE = 0.97
+_FILE = "seconds.json"
 
 
 @contextlib.contextmanager
@@ -119,20 +121,30 @@ def _name(prepared: Prepared) -> str:
 
 def _known() -> dict[str, float]:
     """Return the seconds that compilations took, by scene and engine."""
-    home = cache_home()
-    try:
-        known = json.loads((home / "seconds.json").read_text(encoding="utf-8")) if home else {}
-    except (OSError, ValueError):
-        return {}
+    known = remembered(_FILE)
     return {k: float(v) for k, v in known.items() if isinstance(v, int | float)} if isinstance(known, dict) else {}
 
 
 def _remember(prepared: Prepared, seconds: float) -> None:
-    """Store how long a compilation took; an error in writing is ignored, because nothing depends on this file."""
+    """Store how long a compilation took."""
+    if seconds > 1.0:
+        remember(_FILE, _known() | {_name(prepared): round(seconds, 1)})
+
+
+def remembered(name: str) -> Any:
+    """Return what a file beside the machine code holds; None if it cannot be read."""
     home = cache_home()
-    if home is None or not seconds > 1.0:
-        return
-    new = home / f"seconds.{os.getpid()}"
-    with contextlib.suppress(OSError):
-        new.write_text(json.dumps(_known() | {_name(prepared): round(seconds, 1)}), encoding="utf-8")
-        new.replace(home / "seconds.json")
+    try:
+        return json.loads((home / name).read_text(encoding="utf-8")) if home else None
+    except (OSError, ValueError):
+        return None
+
+
+def remember(name: str, held: object) -> None:
+    """Store something beside the machine code; an error is ignored, because nothing depends on these files."""
+    home = cache_home()
+    if home is not None:
+        new = home / f"{name}.{os.getpid()}"
+        with contextlib.suppress(OSError):
+            new.write_text(json.dumps(held), encoding="utf-8")
+            new.replace(home / name)

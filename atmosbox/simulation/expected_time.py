@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 import math
-import os
 import statistics
-from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
-from atmosbox.simulation.accuracy.measured import load
-from atmosbox.simulation.compilation import cache_home
+import numpy as np
+
+from atmosbox.simulation.accuracy import load
+from atmosbox.simulation.compilation import remember, remembered
 from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["ExpectedTime", "expected_time", "remember_pace"]
@@ -71,37 +68,30 @@ def expected_time(prepared: Prepared) -> ExpectedTime | None:
     seconds = _measured_seconds(prepared)
     if seconds is None:
         return None
-    paces = _paces(cache_home())
-    return ExpectedTime(seconds * statistics.median(paces), True) if paces else ExpectedTime(seconds, False)
+    paces = _paces()
+    return ExpectedTime(seconds * (statistics.median(paces) if paces else 1.0), bool(paces))
 
 
 def remember_pace(prepared: Prepared, seconds: float) -> None:
-    """Store how long the engine took for a run [s], which improves the next expected time.
-
-    An error in writing is ignored, because nothing depends on this file.
-    """
+    """Store how long the engine took for a run [s], which improves the next expected time."""
     expected = _measured_seconds(prepared)
-    home = cache_home() if expected is not None and seconds > _ENOUGH else None
-    if home is None or expected is None:
-        return
-    new = home / f"pace.{os.getpid()}"
-    with contextlib.suppress(OSError):
-        new.write_text(json.dumps([*_paces(home), round(seconds / expected, 3)][-_KEPT:]), encoding="ascii")
-        new.replace(home / _FILE)
+    if expected is not None and seconds > _ENOUGH:
+        remember(_FILE, [*_paces(), round(seconds / expected, 3)][-_KEPT:])
 
 
-def _paces(home: Path | None) -> list[float]:
+def _paces() -> list[float]:
     """Return the ratios of measured to expected time of the last runs on this computer."""
-    try:
-        held = json.loads((home / _FILE).read_text(encoding="ascii")) if home else []
-    except (OSError, ValueError):
-        return []
+    held = remembered(_FILE)
     good = isinstance(held, list) and all(isinstance(each, int | float) and 0.0 < each < 1e6 for each in held)
     return [float(each) for each in held] if good else []
 
 
 def _measured_seconds(prepared: Prepared) -> float | None:
-    """Return the time of a run on the computer where the table was measured [s]; None if it is not known."""
+    """Return the time of a run on the computer where the table was measured [s]; None if it is not known.
+
+    It is that of the nearest run that was measured, times powers of the ratios of their settings. The powers are those
+    nearest to one (twice the size, twice the time) with which the measured runs agree.
+    """
     table = load().get(prepared.scene)
     if table is None or "seconds" not in table.how:
         return None
@@ -109,46 +99,24 @@ def _measured_seconds(prepared: Prepared) -> float | None:
     told = {name for way in table.ways for name in way.settings} | {"molecules"}
     words = {name for name in told if isinstance(defaults.get(name), bool | str)}
     sizes = sorted(name for name in told - words if isinstance(settings.get(name), int | float))
-    alike = [
-        way
-        for way in table.ways
-        if way.engine == str(prepared.engine)
-        and all(settings[name] == way.settings.get(name, defaults[name]) for name in words)
-    ]
-    if not alike:
+    cost, far = [], []
+    for way in table.ways:
+        whole = {**defaults, **way.settings}
+        if way.engine == str(prepared.engine) and all(settings[name] == whole[name] for name in words):
+            cost.append(math.log(way.cost))
+            far.append([_log_ratio(whole[name], settings[name]) for name in sizes])
+    there = np.isfinite(np.array(far).reshape(len(cost), len(sizes))).all(axis=1)
+    if not there.any():
         return None
-    places = [{name: float(way.settings.get(name, defaults[name])) for name in sizes} for way in alike]
-    here = {name: float(settings[name]) for name in sizes}
-    nearest = min(range(len(alike)), key=lambda k: sum(_ratio(here[n], places[k][n]) for n in sizes))
-    cost = alike[nearest].cost
-    for name in sizes:
-        if _ratio(here[name], places[nearest][name]) > math.log(_WIDEST):
-            return None
-        if here[name] != places[nearest][name]:
-            power = _slope(name, here[name], places, [way.cost for way in alike])
-            cost *= (here[name] / places[nearest][name]) ** power
-    return float(table.how["seconds"]) * cost
+    ratios, costs = np.array(far)[there], np.array(cost)[there]
+    nearest = np.abs(ratios).sum(axis=1).argmin()
+    if np.abs(ratios[nearest]).max(initial=0.0) > math.log(_WIDEST):
+        return None
+    steps = ratios - ratios[nearest]
+    power = 1.0 + np.linalg.lstsq(steps, costs - costs[nearest] - steps.sum(axis=1))[0]
+    return float(table.how["seconds"]) * math.exp(costs[nearest] - ratios[nearest] @ power)
 
 
-def _ratio(one: float, other: float) -> float:
-    """Return the distance of two sizes, the absolute logarithm of their ratio."""
-    if one == other:
-        return 0.0
-    return abs(math.log(one / other)) if one > 0.0 < other else math.inf
-
-
-def _slope(name: str, here: float, places: Sequence[Mapping[str, float]], costs: Sequence[float]) -> float:
-    """Return the power of a setting with which the cost grows, from the two runs nearest to its value.
-
-    If no two runs differ in this setting alone, the cost is taken as proportional to it.
-    """
-    pairs = [
-        (_ratio(one[name], here) + _ratio(other[name], here), j, k)
-        for j, one in enumerate(places)
-        for k, other in enumerate(places[:j])
-        if 0.0 < _ratio(one[name], other[name]) < math.inf and all(one[n] == other[n] for n in one if n != name)
-    ]
-    if not pairs:
-        return 1.0
-    _, j, k = min(pairs)
-    return math.log(costs[j] / costs[k]) / math.log(places[j][name] / places[k][name])
+def _log_ratio(one: float, other: float) -> float:
+    """Return the logarithm of the ratio of two sizes, infinite if only one of them is above zero."""
+    return 0.0 if one == other else math.log(one / other) if one > 0.0 < other else math.inf

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox import scenarios
 from atmosbox.engine import PackingError as EnginePackingError
@@ -21,8 +21,10 @@ from atmosbox.scene.setup import Setup
 from atmosbox.scene.spelling import field_name
 from atmosbox.simulation import accuracy as accuracies
 from atmosbox.simulation.accuracy import Expectation
-from atmosbox.simulation.link import Replay
 from atmosbox.version import __version__
+
+if TYPE_CHECKING:
+    from atmosbox.simulation.link import Replay
 
 __all__ = ["Card", "Prepared", "build", "card", "keeps_molecules", "prepare", "usual_engine"]
 

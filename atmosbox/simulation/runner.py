@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 import warnings
@@ -10,17 +11,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import RefusedError, StalledError
-from atmosbox.errors import Command, EngineError, FileError, Option, SoundingError, UnknownSceneError
+from atmosbox.errors import Command, EngineError, FileError, Option, SoundingError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
-from atmosbox.simulation.link import read_link
+from atmosbox.simulation.link import check_nothing_changes, read_link, replayed
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
-from atmosbox.simulation.replay import check_nothing_changes, replayed
-from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, from_file, put_back, read_state, with_state
+from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, from_file, put_back, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
 if TYPE_CHECKING:
@@ -43,8 +43,6 @@ __all__ = [
     "prepare",
     "prepared_again",
     "replayed",
-    "resume",
-    "run",
     "verify",
 ]
 
@@ -126,27 +124,23 @@ def execute(
     """
     if restart is not None:
         check_alike(restart, prepared)
-    if checkpoint is None:
-        return _execute(prepared, None, progress, command, restart, strict)
-    with uninterrupted():
-        checkpoint.load_libraries()
-    checkpoint.begin()
-    try:
-        return _execute(prepared, checkpoint, progress, command, restart, strict)
-    finally:
-        checkpoint.release()
+    with contextlib.ExitStack() as stack:
+        if checkpoint is not None:
+            with uninterrupted():
+                checkpoint.load_libraries()
+            stack.callback(checkpoint.begin().release)
+        return _execute(prepared, checkpoint, progress or (lambda share, word: None), command, restart, strict)
 
 
 def _execute(
     prepared: Prepared,
     checkpoint: Checkpoint | None,
-    progress: Progress | None,
+    tell: Progress,
     command: str,
     restart: Restart | None,
     strict: bool,
 ) -> Outcome:
     """Run a prepared scenario after its output path has been reserved."""
-    tell = progress or (lambda share, word: None)
     with told(prepared, tell):
         setup = build(prepared)
         setup.parcel.advance(0.0)
@@ -176,9 +170,8 @@ def _execute(
         dataset, headlines = recording.dataset(status)
         parcel = setup.parcel
         made = parcel.numerical_heat / (sum(parcel.energy()[:2]) or 1.0)
-        return Outcome(
-            dataset, headlines, spent, parcel.contacts, parcel.ledger(), recording.busy, made, parcel.escaped()
-        )  # fmt: skip
+        cost = (spent, parcel.contacts, parcel.ledger(), recording.busy)
+        return Outcome(dataset, headlines, *cost, made, parcel.escaped())
 
     def resumable(dataset: xr.Dataset) -> xr.Dataset:
         nonlocal warned
@@ -235,77 +228,6 @@ def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart
     return made if prepared.replay is None else made | prepared.replay.attributes(setup, made)
 
 
-def run(
-    scene: str | os.PathLike[str] | None = None,
-    *,
-    replay: str | None = None,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Progress | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool | None = None,
-    **settings: Any,
-) -> xr.Dataset:
-    """Run a scenario and return its measurements.
-
-    Parameters
-    ----------
-    scene
-        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own; None if a link names it.
-    replay
-        The link of a run in the page: its scene, its settings and every turn of a knob, see `replayed`.
-    out
-        Path of the netCDF file; nothing is written without it.
-    force
-        Whether a file of that name may be replaced.
-    progress
-        Called with the completed share and a word on the present activity.
-    engine
-        The engine, with its options, such as ``stepped:delta=0.02``; None for that of the scene.
-    accuracy
-        How accurate the run is to be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
-        or ``"2%"``. It chooses the engine, and the settings that are not given.
-    save_molecules
-        Whether positions and velocities of all molecules are saved in every frame; None if they take less than 10 MB.
-    **settings
-        Values by name, numbers in the documented unit or texts with a unit.
-
-    Returns
-    -------
-    xarray.Dataset
-        All measurements, with the values of the theory, in SI units.
-
-    Raises
-    ------
-    AtmosboxError
-        If the scene or a setting is refused, the file cannot be written, or the engine cannot continue.
-
-    Examples
-    --------
-    >>> box = run("elastic-collisions", duration="2 s", seed=3)
-    >>> bool(abs(box.energy_change).max() < 1e-12)
-    True
-    """
-    from atmosbox.file.checkpoint import Checkpoint
-
-    given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
-    if replay is not None:
-        check_nothing_changes("a run that is replayed", given)
-        prepared = replayed(replay, scene, save_molecules=save_molecules)
-        given = {"replay": replay}
-    elif scene is None:
-        raise UnknownSceneError("No scene is given", Command("list"), " to see all")
-    else:
-        prepared = prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=save_molecules)
-    checkpoint = None
-    if out is not None:
-        checkpoint = Checkpoint(out, force=force)
-    named = [] if scene is None else [repr(str(scene))]
-    words = ", ".join([*named, *(f"{name}={value!r}" for name, value in given.items())])
-    return execute(prepared, checkpoint=checkpoint, progress=progress, command=f"atmosbox.run({words})").dataset
-
-
 def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None) -> Prepared:
     """Return the scenario of a run that is to continue, prepared as it was when the run began.
 
@@ -339,46 +261,3 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
     )
     again = read_link(made["replay"])[2] if "replay" in made else None
     return replace(prepared, expectation=None, stated=made.get("accuracy"), replay=again)
-
-
-def resume(
-    path: str | os.PathLike[str],
-    *,
-    scene: str | os.PathLike[str] | None = None,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """Continue a run that was stopped or killed; the result is the same, bit for bit, as without the stop.
-
-    Parameters
-    ----------
-    path
-        The file that it left, ``NAME.part.nc``.
-    scene
-        The path of the scene, if it is one of your own.
-    out
-        Path of the finished run; by default the path that the run was to write.
-    force
-        Whether a file may be replaced.
-    progress
-        Called with the completed share and a word on the present activity.
-
-    Returns
-    -------
-    xarray.Dataset
-        All measurements since the run began.
-
-    Raises
-    ------
-    FileError
-        If the file holds no state, or the version, the sources of the engine, the scene or the processor have changed.
-    """
-    from atmosbox.file.checkpoint import Checkpoint
-    from atmosbox.file.output_path import whole_path
-
-    restart = read_state(os.fspath(path))
-    prepared = prepared_again(restart, scene)
-    checkpoint = Checkpoint(whole_path(path) if out is None else out, force=force)
-    command = f"atmosbox.resume({os.fspath(path)!r})"
-    return execute(prepared, checkpoint=checkpoint, progress=progress, command=command, restart=restart).dataset

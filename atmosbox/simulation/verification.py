@@ -60,7 +60,7 @@ def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
 
     Examples
     --------
-    >>> from atmosbox.simulation.runner import run
+    >>> from atmosbox import run
     >>> box = run("elastic-collisions", duration="2 s")
     >>> headlines_of(box)[0].name
     'energy_of_light_discs'
@@ -99,7 +99,7 @@ def verify(dataset: xr.Dataset) -> list[Check]:
 
     Examples
     --------
-    >>> from atmosbox.simulation.runner import run
+    >>> from atmosbox import run
     >>> all(check.passed for check in verify(run("elastic-collisions", seed=2)))
     True
     """

@@ -24,7 +24,8 @@ MET_BY: dict[str, tuple[str, ...]] = {
     "scene/ascent": ("lifting-dry", "lifting-moist", "lifting-sounding", "mountains"),
     "scene/knob.py": ("lab",),
     "scene/sounding": ("lifting-sounding",),
-    "simulation/accuracy": (),
+    "simulation/accuracy.py": (),
+    "simulation/accuracy.json": (),
     "simulation/restart.py": (),
 }
 """Of which scenarios or rooms a job must name or import one, so that a part of the physics changes its numbers: knobs

@@ -17,10 +17,9 @@ from atmosbox.errors import SettingError, UnknownSceneError
 from atmosbox.file.netcdf import read
 from atmosbox.lab import lab_file, save_lab
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.simulation.link import read_link
+from atmosbox.simulation.link import read_link, replayed
 from atmosbox.simulation.preparation import prepare
 from atmosbox.simulation.recording import Recording
-from atmosbox.simulation.replay import replayed
 from atmosbox.simulation.runner import build
 from tests.in_process import typed
 from tests.lab.test_browser import SMALL, Lab, state_of

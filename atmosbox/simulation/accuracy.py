@@ -1,0 +1,339 @@
+"""How accurate a run will be: a table of measured errors, and the cheapest run that is accurate enough.
+
+Every scene that can be compared with theory was run on several engines and with several settings, with many seeds each.
+The table that comes with atmosbox, ``accuracy.json``, holds for each of these runs the error of every headline and the
+cost, as a ratio to the scene's default run. ``python benchmarks/accuracy.py`` measures it again.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from atmosbox.errors import Option, SettingError
+from atmosbox.scene.target import FIX, TARGETS, Target, parse
+
+__all__ = [
+    "TARGETS",
+    "Expectation",
+    "ExpectedError",
+    "Measured",
+    "Table",
+    "Target",
+    "choose",
+    "cost",
+    "expect",
+    "load",
+    "parse",
+    "said",
+]
+
+
+class ExpectedError(NamedTuple):
+    """The measured error of a headline: in K if ``unit`` is K, else as a share of the theory.
+
+    ``bias`` is the mean difference from theory and ``bias_se`` its standard error, ``noise`` the standard deviation of
+    a single run, and ``theory`` the value of the theory [SI].
+    """
+
+    unit: str
+    bias: float
+    bias_se: float
+    noise: float
+    theory: float
+
+    @property
+    def total(self) -> float:
+        """Root mean square error to expect of a single run.
+
+        The standard error of the bias is included in full.
+
+        Examples
+        --------
+        >>> ExpectedError("K", 0.3, 0.0, 0.4, 288.0).total
+        0.5
+        """
+        return math.hypot(self.bias, self.bias_se, self.noise)
+
+    def size(self, theory: float | None) -> float:
+        """Return the factor from this error to that of a headline [SI], for the value of the theory in a run."""
+        return 1.0 if self.unit == "K" else abs(theory or 0.0)
+
+    def excess(self, target: Target) -> float:
+        """Return the error as a multiple of what a target allows; 0 if the target sets no limit."""
+        if self.unit != "K":
+            return self.total / target.share
+        relative = self.total / abs(self.theory) / target.share if target.absolute else 0.0
+        return max(self.total / target.kelvin, relative)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A run of a scene whose errors were measured.
+
+    Parameters
+    ----------
+    engine
+        The engine with its options.
+    settings
+        The values that differ from the scene's defaults.
+    cost
+        Processor time of the engine, as a multiple of that in the scene's default run.
+    members
+        Number of runs, each with its own seed.
+    errors
+        The error of each headline, by name.
+    """
+
+    engine: str
+    settings: Mapping[str, Any]
+    cost: float
+    members: int
+    errors: Mapping[str, ExpectedError]
+
+    @property
+    def label(self) -> str:
+        """The engine and the settings of this run, in words."""
+        return ", ".join([self.engine, *(said(name, value) for name, value in self.settings.items())])
+
+    def excess(self, target: Target) -> float:
+        """Return the largest error as a multiple of what a target allows."""
+        return max((error.excess(target) for error in self.errors.values()), default=math.inf)
+
+
+@dataclass(frozen=True)
+class Table:
+    """The measurements of one scene.
+
+    Parameters
+    ----------
+    varies
+        The settings that trade accuracy for time; any other setting makes a different experiment.
+    labels
+        Labels of the headlines in a table, by name.
+    ways
+        The measured runs.
+    how
+        How they were measured: the version, the budget [s], the command, and the processor time of the default run [s].
+    """
+
+    varies: tuple[str, ...]
+    labels: Mapping[str, str]
+    ways: tuple[Measured, ...]
+    how: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Table:
+        """Return the table from its entry in the file."""
+        about = entry["headlines"]
+        return cls(
+            tuple(entry["varies"]),
+            {name: one["label"] for name, one in about.items()},
+            tuple(
+                Measured(
+                    way["engine"],
+                    way["settings"],
+                    way["cost"],
+                    way["members"],
+                    {
+                        name: ExpectedError(about[name]["unit"], bias, bias_se, noise, about[name]["theory"])
+                        for name, (bias, bias_se, noise) in way["errors"].items()
+                    },
+                )
+                for way in entry["ways"]
+            ),
+            entry["measured"],
+        )
+
+    def same_experiment(self, settings: Mapping[str, Any]) -> tuple[Measured, ...]:
+        """Return the measured runs of the experiment that a user has set, as far as the table distinguishes it.
+
+        Another switch or word makes another experiment; among different numbers, those runs count that agree in most of
+        them.
+        """
+        apart = {name: value for way in self.ways for name, value in way.settings.items() if name not in self.varies}
+        other = {name for name, value in apart.items() if isinstance(value, bool | str)}
+
+        def misses(way: Measured, names: set[str]) -> int:
+            return sum(way.settings.get(name) != settings.get(name) for name in names)
+
+        same = [way for way in self.ways if not misses(way, other)]
+        fewest = min((misses(way, set(apart)) for way in same), default=0)
+        return tuple(way for way in same if misses(way, set(apart)) == fewest)
+
+
+@functools.cache
+def load() -> Mapping[str, Table]:
+    """Return the measured table that comes with atmosbox, by scene.
+
+    Examples
+    --------
+    >>> "temperature" in load()
+    True
+    """
+    held = json.loads(Path(__file__).with_name("accuracy.json").read_text(encoding="utf-8"))
+    return MappingProxyType({scene: Table.of(entry) for scene, entry in held["scenes"].items()})
+
+
+def said(name: str, value: bool | int | float | str) -> str:
+    """Return a setting as it is typed.
+
+    Examples
+    --------
+    >>> said("ascent", 400.0), said("plane", True)
+    ('ascent=400', 'plane=on')
+    """
+    if isinstance(value, bool):
+        return f"{name}={'on' if value else 'off'}"
+    return f"{name}={value:.12g}" if isinstance(value, float) else f"{name}={value}"
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """The errors that are expected of a run.
+
+    Parameters
+    ----------
+    way
+        The run that was measured.
+    sets
+        The chosen values of the settings that trade accuracy for time.
+    labels
+        Labels of the headlines in a table, by name.
+    target
+        The accuracy that the user asked for; None if the engine was given explicitly.
+    met
+        Whether the expected errors are within the target.
+    differs
+        The settings in which this run differs from the one that was measured.
+    """
+
+    way: Measured
+    labels: Mapping[str, str]
+    sets: Mapping[str, Any] = field(default_factory=dict)
+    target: Target | None = None
+    met: bool = True
+    differs: tuple[str, ...] = ()
+
+    def at(self, changed: Mapping[str, Any]) -> Expectation:
+        """Return the expectation for a run whose settings differ from the defaults in `changed`."""
+        names = sorted((changed.keys() | self.way.settings.keys()) - {"seed"})
+        differs = (name for name in names if changed.get(name) != self.way.settings.get(name))
+        return replace(self, differs=tuple(differs))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the expectation as values that JSON can hold."""
+        errors = {
+            name: {**error._asdict(), "total": error.total, "label": self.labels[name]}
+            for name, error in self.way.errors.items()
+        }
+        return {
+            "wish": None if self.target is None else self.target.text,
+            "met": self.met,
+            "engine": self.way.engine,
+            "settings": dict(self.way.settings),
+            "cost": self.way.cost,
+            "members": self.way.members,
+            "differs": list(self.differs),
+            "errors": errors,
+        }
+
+
+def choose(
+    scene: str,
+    target: str,
+    settings: Mapping[str, Any] = MappingProxyType({}),
+    why: str = "whose errors were not measured",
+) -> Expectation:
+    """Return the cheapest measured run of a scene whose expected error is within a target.
+
+    Parameters
+    ----------
+    scene
+        The name of a scene.
+    target
+        The largest error.
+    settings
+        The values that the user has set and that differ from the scene's defaults, by name.
+    why
+        Why a scene is in no table, as the end of a sentence.
+
+    Returns
+    -------
+    Expectation
+        The chosen run. If no run reaches a target with a name, it is the most accurate run, and ``met`` is False.
+
+    Raises
+    ------
+    SettingError
+        If the scene was not measured, or no run is within a target given as a number; the sentence names the best run.
+
+    Examples
+    --------
+    >>> choose("temperature", "reference").met
+    True
+    """
+    allowed, tables = parse(target), load()
+
+    def refused(problem: str, *fix: Option | str) -> SettingError:
+        return SettingError("accuracy", allowed.text, problem, *fix)
+
+    if scene not in tables:
+        raise refused(f"is not for {scene}, {why}", f"leave it out, or take one of {', '.join(tables)}")
+    table = tables[scene]
+    # a run that ends before it reaches a headline satisfies no target
+    ways = [way for way in table.same_experiment(settings) if way.errors.keys() >= table.labels.keys()]
+    if not ways:
+        raise refused(f"is not for {scene} with these settings, at which nothing was measured", "leave it out")
+    good = [way for way in ways if way.excess(allowed) <= 1.0]
+    best = min(ways, key=lambda way: way.excess(allowed))
+    if good and not allowed.best:
+        if not any(way.excess(allowed) for way in ways):
+            raise refused(f"says nothing of {scene}, which has no temperature", *FIX)
+        best = min(good, key=lambda way: way.cost)
+    elif allowed.text not in TARGETS:
+        reached = best.excess(allowed) * (100.0 * allowed.share if allowed.absolute else allowed.kelvin)
+        digits = 1 - math.floor(math.log10(reached))
+        enough = math.ceil(reached * 10.0**digits) / 10.0**digits  # never less than the best run reaches
+        unit = "%" if allowed.absolute else "K"
+        raise refused(
+            f"is more than any measured run of {scene} reaches: the best, {best.label}, comes to "
+            f"{reached:.2g} {unit} at {cost(best.cost)}",
+            Option("accuracy", f"{enough:.6g}{unit}"), ", or reference"
+        )  # fmt: skip
+    sets = {name: value for name, value in best.settings.items() if name in table.varies}
+    return Expectation(best, table.labels, sets, allowed, met=bool(good) or allowed.best)
+
+
+def expect(scene: str, engine: str, changed: Mapping[str, Any]) -> Expectation | None:
+    """Return the errors expected of an engine at some settings; None if that run was not measured.
+
+    Parameters
+    ----------
+    scene
+        The name of a scene.
+    engine
+        The engine with its options.
+    changed
+        The values that differ from the scene's defaults.
+    """
+    table = load().get(scene, Table((), {}, ()))
+    same = (Expectation(way, table.labels).at(changed) for way in table.ways if way.engine == engine)
+    return next((found for found in same if not found.differs), None)
+
+
+def cost(ratio: float) -> str:
+    """Return a cost in words.
+
+    Examples
+    --------
+    >>> cost(0.0123), cost(1.0)
+    ('0.012 times the cost of the default run', 'the cost of the default run')
+    """
+    return f"{'' if ratio == 1.0 else f'{ratio:.2g} times '}the cost of the default run"
