@@ -14,7 +14,7 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
 
-__all__ = ["cache_home", "compile_kernels", "compiled_here", "expected_seconds", "remember", "remembered", "told"]
+__all__ = ["cache_home", "compile_kernels", "compiled_here", "remember", "remembered", "told"]
 
 _USUAL = 15.0  # seconds, if this machine has not compiled the scene yet
 _BREATH = 0.2
@@ -23,7 +23,7 @@ _FILE = "seconds.json"
 
 
 @contextlib.contextmanager
-def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[None]:
+def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Callable[[], float]]:
     """Report the progress of compilation while a block runs, if anything is compiled in the block.
 
     The expected time is that of the last compilation of the scene on this machine.
@@ -35,50 +35,51 @@ def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Non
     tell
         Called with the completed share and a sentence, from a separate thread while the compiler works.
 
+    Yields
+    ------
+    callable
+        Function that returns the processor time of the compiler so far [s].
+
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> with told(prepare("temperature", {}), print):
-    ...     pass
+    >>> with told(prepare("temperature", {}), print) as spent:
+    ...     spent()
+    0.0
     """
-    expected, sentence = _USUAL, ""
-    spent, began, depth = 0.0, 0.0, 0
+    name = f"{prepared.scene} {prepared.engine.name}"
+    before, began, depth = 0.0, 0.0, 0
     over = threading.Event()
     teller: threading.Thread | None = None
 
-    def go_on_telling() -> None:
+    def spent() -> float:
+        return before + (time.process_time() - began if depth else 0.0)
+
+    def go_on_telling(expected: float, sentence: str) -> None:
         while not over.wait(_BREATH):
             if depth:
-                tell(min((spent + time.process_time() - began) / expected, _NEVER_DONE), sentence)
+                tell(min(spent() / expected, _NEVER_DONE), sentence)
 
-    def watch(name: str, begins: bool) -> None:
-        nonlocal expected, sentence, spent, began, depth, teller
-        if begins:
-            began = began if depth else time.process_time()
-            depth += 1
-            if teller is None:
-                expected = expected_seconds(prepared)
-                sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
-                tell(0.0, sentence)
-                teller = threading.Thread(target=go_on_telling, daemon=True)
-                teller.start()
-        elif depth:
-            depth -= 1
-            spent += 0.0 if depth else time.process_time() - began
+    def watch(kernel: str, begins: bool) -> None:
+        nonlocal before, began, depth, teller
+        before, began = spent(), time.process_time()
+        depth = max(depth + (1 if begins else -1), 0)
+        if begins and teller is None:
+            expected = _known().get(name, _USUAL)
+            sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
+            tell(0.0, sentence)
+            teller = threading.Thread(target=go_on_telling, args=(expected, sentence), daemon=True)
+            teller.start()
 
     try:
         with compilations(watch):
-            yield
+            yield spent
     finally:
         over.set()
         if teller is not None:
             teller.join()
-            _remember(prepared, spent)
-
-
-def expected_seconds(prepared: Prepared) -> float:
-    """Return the expected time to compile the kernels of a scene on this computer [s]."""
-    return float(_known().get(_name(prepared), _USUAL))
+        if spent() > 1.0:
+            remember(_FILE, _known() | {name: round(spent(), 1)})
 
 
 def compile_kernels(prepared: Prepared) -> float:
@@ -86,21 +87,12 @@ def compile_kernels(prepared: Prepared) -> float:
 
     The box is built as for a run, since the kernels depend on it, and advanced by a very short time.
     """
-    spent, began = 0.0, 0.0
-
-    def watch(name: str, begins: bool) -> None:
-        nonlocal spent, began
-        now = time.process_time()
-        spent, began = (spent, now) if begins else (spent + now - began, now)
-
-    with compilations(watch):
+    with told(prepared, lambda share, sentence: None) as spent:
         setup = build(prepared)
         setup.parcel.advance(0.0)
         step = getattr(setup.parcel, "time_step", 0.0)
         setup.parcel.advance(max(2.0 * step, 1e-4 * setup.frame))
-    if spent:
-        _remember(prepared, spent)
-    return spent
+    return spent()
 
 
 def cache_home() -> Path | None:
@@ -115,20 +107,10 @@ def compiled_here() -> int:
     return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
 
 
-def _name(prepared: Prepared) -> str:
-    return f"{prepared.scene} {prepared.engine.name}"
-
-
 def _known() -> dict[str, float]:
     """Return the seconds that compilations took, by scene and engine."""
     known = remembered(_FILE)
     return {k: float(v) for k, v in known.items() if isinstance(v, int | float)} if isinstance(known, dict) else {}
-
-
-def _remember(prepared: Prepared, seconds: float) -> None:
-    """Store how long a compilation took."""
-    if seconds > 1.0:
-        remember(_FILE, _known() | {_name(prepared): round(seconds, 1)})
 
 
 def remembered(name: str) -> Any:

@@ -1,16 +1,18 @@
 """The state of a run inside its file, from which the run continues bit for bit.
 
 The engine supplies the state of its box, see `atmosbox.engine.core.saved_state`. With it are stored the values that the
-instruments hold: a tree of plain numbers, and the bytes of all arrays. Reading them cannot run code: it makes only
-numbers, texts and lists, and no object that the scene does not build itself.
+instruments hold: a tree of plain numbers, and all arrays as `numpy.savez` writes them. Reading them cannot run code: it
+makes only numbers, texts and lists, and no object that the scene does not build itself.
 """
 
 from __future__ import annotations
 
 import functools
 import hashlib
+import io
 import json
 import platform
+import zipfile
 from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
@@ -34,12 +36,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Restart", "UnkeptError", "check_alike", "described", "put_back", "read_state", "with_state"]
 
-FORMAT = 1
+FORMAT = 2
 """Version of the format that is written here."""
 
 _KEPT = {"kept": 0}
-
-Bytes = NDArray[np.uint8]
+_DAMAGE = (RefusedError, ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, OSError, RuntimeError,
+           TypeError, ValueError, zipfile.BadZipFile)  # fmt: skip
+"""What a state raises that is damaged, or that of another run."""
 
 
 class Restart(NamedTuple):
@@ -52,9 +55,9 @@ class Restart(NamedTuple):
     about
         What determines the run: see `described`.
     tree
-        The state of box and instruments, with the places of its arrays.
+        The state of box and instruments; in it stand the numbers of its arrays.
     content
-        The bytes of the arrays.
+        The arrays, as `numpy.savez` writes them.
     attributes
         The global attributes of the file.
     """
@@ -62,7 +65,7 @@ class Restart(NamedTuple):
     source: Path
     about: dict[str, Any]
     tree: dict[str, Any]
-    content: Bytes
+    content: bytes
     attributes: dict[str, Any]
 
 
@@ -101,35 +104,22 @@ def _sources() -> str:
 
 
 def with_state(dataset: xr.Dataset, recording: Recording, seconds: float) -> xr.Dataset:
-    """Return a dataset with the state from which its run continues.
+    """Return a dataset with the state from which its run, which has taken some seconds, continues between two samples.
 
-    Parameters
-    ----------
-    dataset
-        What `recording` has measured so far.
-    recording
-        The run, between two samples.
-    seconds
-        The time that the run has taken so far [s].
-
-    Raises
-    ------
-    UnkeptError
-        If an instrument of a user's own holds a value that no file can hold.
+    An `UnkeptError` is raised if an instrument of a user's own holds a value that no file can hold.
     """
     import xarray as xr
 
     from atmosbox.file.netcdf import STATE
 
-    arrays = _Arrays()
     try:
         state = recording.setup.parcel.state()
     except RefusedError as error:
         raise UnkeptError(str(error)) from error
     known = {id(recording.setup.parcel), id(recording.setup), *map(id, _drivers(recording))}
-    coder = _Coder(arrays, known, recording.prepared.module)
+    coder = _Coder(known, recording.prepared.module)
     tree = {
-        "box": {"text": state.text, "memory": {name: arrays.keep(piece) for name, piece in state.memory.items()}},
+        "box": {"text": state.text, "memory": {name: coder.keep(piece) for name, piece in state.memory.items()}},
         "instruments": [coder.attributes(each, f"instrument {k + 1}") for k, each in enumerate(recording.instruments)],
         "times": coder.code(list(recording.times), "times"),
         "sampled": recording.sampled,
@@ -137,20 +127,16 @@ def with_state(dataset: xr.Dataset, recording: Recording, seconds: float) -> xr.
         "busy": recording.busy,
         "seconds": seconds,
     }
-    head = json.dumps({"about": described(recording.prepared), "tree": tree, "arrays": arrays.table}).encode()
-    blob = np.frombuffer(len(head).to_bytes(8, "little") + head + b"".join(arrays.pieces), np.uint8)
+    head = json.dumps({"about": described(recording.prepared), "tree": tree}).encode()
+    arrays = io.BytesIO()
+    np.savez(arrays, *coder.arrays)
+    blob = np.frombuffer(len(head).to_bytes(8, "little") + head + arrays.getbuffer(), np.uint8)
     words = {"long_name": "state of the run, from which atmosbox run --resume goes on"}
     return dataset.assign({STATE: xr.Variable((f"{STATE}_byte",), blob, words, {"dtype": "u1"})})
 
 
 def read_state(path: str | Path) -> Restart:
-    """Return the state that a file holds.
-
-    Raises
-    ------
-    FileError
-        If it is not the file of a run, holds no state, or the state is damaged.
-    """
+    """Return the state that a file holds; refuse a file without one, or with a damaged one."""
     from atmosbox.file import netcdf
 
     found = netcdf.read(path)
@@ -163,9 +149,8 @@ def read_state(path: str | Path) -> Restart:
     try:
         size = int.from_bytes(content[:8].tobytes(), "little")
         head = json.loads(content[8 : 8 + size].tobytes())
-        tree = {"arrays": head["arrays"], **head["tree"]}
         attributes = {**found.attrs, "history": str(found.attrs["history"])}
-        return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], attributes)
+        return Restart(Path(path), dict(head["about"]), dict(head["tree"]), content[8 + size :].tobytes(), attributes)
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise FileError(f"The state in {path} is damaged", from_file(path), " to run it again") from error
 
@@ -176,13 +161,7 @@ def from_file(path: str | Path) -> Command:
 
 
 def check_alike(restart: Restart, prepared: Prepared) -> None:
-    """Refuse to continue if anything that determines the run has changed.
-
-    Raises
-    ------
-    FileError
-        If so; the sentence says what has changed.
-    """
+    """Refuse to continue if anything that determines the run has changed."""
     now = described(prepared)
     for name, value in now.items():
         before = restart.about.get(name)
@@ -196,16 +175,11 @@ def check_alike(restart: Restart, prepared: Prepared) -> None:
 
 
 def put_back(restart: Restart, recording: Recording) -> float:
-    """Restore the state of a file into a run that was just built, and return the time that the run has taken [s].
-
-    Raises
-    ------
-    FileError
-        If the state is damaged, or belongs to another run.
-    """
+    """Restore the state of a file into a run that was just built, and return the time that the run has taken [s]."""
     tree = restart.tree
     try:
-        arrays = [_array(restart.content, entry) for entry in tree["arrays"]]
+        with np.load(io.BytesIO(restart.content), allow_pickle=False) as stored:
+            arrays = list(stored.values())
         memory = {str(name): arrays[place] for name, place in tree["box"]["memory"].items()}
         recording.setup.parcel.restore(SavedState(tree["box"]["text"], memory))
         for each, codes in zip(recording.instruments, tree["instruments"], strict=True):
@@ -215,7 +189,7 @@ def put_back(restart: Restart, recording: Recording) -> float:
         recording.turned = int(tree["turned"])
         recording.busy = float(tree["busy"])
         return float(tree["seconds"])
-    except (RefusedError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+    except _DAMAGE as error:
         raise FileError(
             f"The state in {restart.source} is damaged or that of another run ({error})",
             from_file(restart.source),
@@ -229,41 +203,17 @@ def _drivers(recording: Recording) -> list[object]:
     return [] if driver is None else [driver]
 
 
-class _Arrays:
-    """The bytes of arrays, one after the other, and the place of each."""
-
-    def __init__(self) -> None:
-        self.pieces: list[bytes] = []
-        self.table: list[list[Any]] = []
-        self._size = 0
-
-    def keep(self, array: NDArray[Any]) -> int:
-        order = "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
-        piece = array.tobytes("F" if order == "F" else "C")
-        self.table.append([self._size, array.dtype.str, list(array.shape), order])
-        self.pieces.append(piece)
-        self._size += len(piece)
-        return len(self.table) - 1
-
-
-def _array(content: Bytes, entry: list[Any]) -> NDArray[Any]:
-    """Return a new array from the bytes of a file."""
-    start, kind, shape, order = entry
-    dtype = np.dtype(kind)
-    if dtype.hasobject:
-        raise ValueError("an array of objects")
-    size = int(np.prod(shape, dtype=np.int64))
-    piece = content[start : start + size * dtype.itemsize].tobytes()
-    return np.frombuffer(piece, dtype, size).reshape(shape, order=order).copy(order=order)
-
-
 class _Coder:
-    """Encodes the values that instruments hold as plain numbers."""
+    """Encodes the values that instruments hold as plain numbers, and collects their arrays."""
 
-    def __init__(self, arrays: _Arrays, known: set[int], module: ModuleType) -> None:
-        self._arrays = arrays
+    def __init__(self, known: set[int], module: ModuleType) -> None:
+        self.arrays: list[NDArray[Any]] = []
         self._seen = set(known)
         self._own = module.__name__
+
+    def keep(self, array: NDArray[Any]) -> int:
+        self.arrays.append(array)
+        return len(self.arrays) - 1
 
     def attributes(self, thing: object, path: str) -> dict[str, Any]:
         self._seen.add(id(thing))
@@ -278,7 +228,7 @@ class _Coder:
         if isinstance(value, np.ndarray):
             if value.dtype.hasobject:
                 raise UnkeptError(path)
-            return {"array": self._arrays.keep(value)}
+            return {"array": self.keep(value)}
         if isinstance(value, list):
             return [self.code(each, path, nested=True) for each in value]
         if isinstance(value, tuple):
