@@ -7,7 +7,7 @@ import pytest
 
 import atmosbox as ab
 from atmosbox.errors import FileError
-from atmosbox.file.trajectory import extended_xyz
+from atmosbox.file.export import extended_xyz
 from tests.few_frames import cut
 
 DALTON = 1.66053906892e-27

@@ -19,7 +19,7 @@ import xarray as xr
 import atmosbox as ab
 from atmosbox import theory
 from atmosbox.engine import FollowPressure, ParcelSet, Piston, Specular
-from atmosbox.file.spreadsheet import tables
+from atmosbox.file.export import tables
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.kernel_table import kernels
 from atmosbox.lab.lab_box import lab_box

@@ -42,7 +42,7 @@ def export(
     dataset = read(file)
     default = beside([file], format or "extxyz")
     if format == "csv" or (format is None and Path(out or "").suffix.lower() == ".csv"):
-        from atmosbox.file.spreadsheet import tables
+        from atmosbox.file.export import tables
 
         made = tables(dataset)
 
@@ -58,7 +58,7 @@ def export(
         return
     path = chosen(out, default, force=force, quiet=quiet)
     place, _ = named(path, format, get_args(Exported), force=force, what="box")
-    from atmosbox.file.trajectory import extended_xyz
+    from atmosbox.file.export import extended_xyz
 
     write_whole(place, extended_xyz(dataset))
     say(str(place))

@@ -7,8 +7,8 @@
 `output_lock`  one writer for one file
 `output_path`  the one way to write a file: its path is checked, and it is there whole or not at all
 `validity`     checks of a file before its numbers are loaded
-`heap`         a kind of damage on which the HDF5 library hangs
 `netcdf`       write datasets to netCDF files, and read them
-`molecules`    the molecules of a saved run, frame by frame
 `checkpoint`   the file of a run that is not finished
+`molecules`    the molecules of a saved run, frame by frame
+`export`       a saved run for other programs
 """

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,50 +22,14 @@ __all__ = ["VARIABLES", "Variable", "dataset", "extended", "headline_variables",
 _LABELS = {"wall": ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high"), "axis": ("x", "y", "z")}
 
 
-class _Headline(Protocol):
-    """A headline, one of the few main results of a run; None for each part that the scene does not state."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> float | None: ...
-    @property
-    def standard_error(self) -> float | None: ...
-    @property
-    def theory(self) -> float | None: ...
-    @property
-    def tolerance(self) -> float | None: ...
-    @property
-    def chance(self) -> float: ...
-    @property
-    def known(self) -> float: ...
-    @property
-    def verdict(self) -> str | None: ...
-    @property
-    def unit(self) -> str: ...
-    @property
-    def display_unit(self) -> str: ...
-    @property
-    def label(self) -> str: ...
-    @property
-    def reason(self) -> str | None: ...
-    @property
-    def low(self) -> float | None: ...
-    @property
-    def high(self) -> float | None: ...
-    @property
-    def resolved(self) -> bool: ...
-    @property
-    def program(self) -> str: ...
-
-
-def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
+def headline_variables(headline: Any) -> dict[str, xr.Variable]:
     """Return the variables that hold one headline: its value, standard error, closed-form answer and tolerance.
 
     Parameters
     ----------
     headline
-        The headline in SI units. If the value is None, it becomes NaN; other parts that are None get no variable.
+        An `atmosbox.scene.headline.Headline`, in SI units. If the value is None, it becomes NaN; other parts that are
+        None get no variable.
 
     Returns
     -------
@@ -141,7 +105,7 @@ def dataset(
     frames: Mapping[str, npt.ArrayLike],
     coords: Mapping[str, npt.ArrayLike],
     attrs: Mapping[str, Any],
-    headlines: Iterable[_Headline] = (),
+    headlines: Iterable[Any] = (),
     time_unit: str = "ns",
     own: Mapping[str, Variable] = MappingProxyType({}),
 ) -> xr.Dataset:
@@ -203,7 +167,7 @@ def dataset(
 def extended(
     run: xr.Dataset,
     frames: Mapping[str, npt.ArrayLike],
-    headlines: Iterable[_Headline] = (),
+    headlines: Iterable[Any] = (),
     own: Mapping[str, Variable] = MappingProxyType({}),
 ) -> xr.Dataset:
     """Return a dataset with more variables, such as those that theory predicts, and with headlines.
@@ -234,7 +198,7 @@ def extended(
     return _with(run, _measured(frames, own), headlines)
 
 
-def _with(run: xr.Dataset, held: dict[str, xr.Variable], headlines: Iterable[_Headline]) -> xr.Dataset:
+def _with(run: xr.Dataset, held: dict[str, xr.Variable], headlines: Iterable[Any]) -> xr.Dataset:
     """Return a dataset with variables and headlines, in which every variable names those derived from it."""
     for dim in {dim for entry in held.values() for dim in entry.dims}:
         if dim not in run.coords and dim not in ("molecule", "drop"):

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError, shown
-from atmosbox.file.heap import has_endless_heap
 from atmosbox.file.output_path import AnyPath, check_writable, part_path, whole_file
 from atmosbox.file.provenance import FORMAT
-from atmosbox.file.validity import check_valid
+from atmosbox.file.validity import check_valid, has_endless_heap
 from atmosbox.version import __version__
 
 if TYPE_CHECKING:

@@ -1,9 +1,10 @@
-"""Checks of a file before its numbers are loaded: that they fit into memory, and are of the declared kind."""
+"""Checks of a file before its numbers are loaded: they fit into memory, are as declared, and HDF5 can read them."""
 
 from __future__ import annotations
 
 import json
 import math
+import mmap
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,7 @@ from atmosbox.file.variables import known
 if TYPE_CHECKING:
     import netCDF4
 
-__all__ = ["check_valid", "free_memory"]
+__all__ = ["check_valid", "free_memory", "has_endless_heap"]
 
 DENSEST = 1100
 """Largest number of bytes in memory for one byte of a file: deflate packs at most 1032 into one."""
@@ -24,6 +25,8 @@ DENSEST = 1100
 SMALL = 50_000_000
 """Size in bytes up to which a file is not checked, because it fits into the memory of any computer."""
 
+_HEAP = b"GCOL\1\0\0\0"
+_HEAD = 16
 _JSON: dict[str, type | tuple[type, ...]] = {
     "atmosbox_parameters": dict,
     "atmosbox_headlines": list,
@@ -121,3 +124,39 @@ def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> Non
     for needed in {"units", "flag_meanings"} & declared.attributes().keys():
         if not isinstance(getattr(held, needed, None), str):
             raise FileError(f"{source} does not say the {needed} of {name}: run the scene again.")
+
+
+def has_endless_heap(path: str | os.PathLike[str]) -> bool:
+    """Return whether an HDF5 file has a heap, which holds its texts, with a piece of free space of length zero.
+
+    HDF5 (seen in 2.2) steps through a heap by the lengths of its pieces, so it never comes to the end of such a heap,
+    and Python cannot handle a signal such as Ctrl-C meanwhile. An undamaged file has no such heap.
+
+    References
+    ----------
+    .. [1] HDF5 File Format Specification, section III.E, global heap.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "damaged.nc"
+    ...     _ = file.write_bytes(_HEAP + (48).to_bytes(8, "little") + bytes(32))
+    ...     has_endless_heap(file)
+    True
+    """
+    with Path(path).open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        heap = content.find(_HEAP)
+        while heap >= 0:
+            size = int.from_bytes(content[heap + 8 : heap + _HEAD], "little")
+            place, end = heap + _HEAD, min(heap + size, len(content))
+            # an object has a number, a length and its content, padded to eight bytes; number 0 marks free space
+            while place + _HEAD <= end:
+                number = int.from_bytes(content[place : place + 2], "little")
+                length = int.from_bytes(content[place + 8 : place + _HEAD], "little")
+                step = _HEAD + (length + 7) // 8 * 8 if number else length
+                if step == 0:
+                    return True
+                place += step
+            heap = content.find(_HEAP, heap + len(_HEAP))
+    return False

@@ -45,7 +45,7 @@ def profile(path: str | os.PathLike[str], file: str, name: str) -> Table:
     """
     import xarray as xr
 
-    from atmosbox.file.heap import has_endless_heap
+    from atmosbox.file.validity import has_endless_heap
 
     try:
         if has_endless_heap(path):
