@@ -98,13 +98,7 @@ class Checkpoint:
         self.stale = check_writable(self.part, force=True).exists()
 
     def begin(self) -> Checkpoint:
-        """Lock the file for this run alone, and remove the temporary files that a killed run has left.
-
-        Raises
-        ------
-        FileError
-            If another run is writing the file, and the name is not to be numbered.
-        """
+        """Lock the file for this run alone, and remove the temporary files that a killed run has left."""
         if self._lock is None:
             self._lock = self._locked()
             for path in (self.path, self.part):
@@ -143,20 +137,7 @@ class Checkpoint:
             lock.release()
 
     def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
-        """Write the run so far if it is time to, and return whether it was written.
-
-        Parameters
-        ----------
-        make_dataset
-            Function that returns the dataset of the run so far; called only if the dataset is to be written.
-
-        Raises
-        ------
-        DiskFullError
-            If the disk is full; what was written before is kept.
-        FileError
-            If the file can no longer be written.
-        """
+        """Write the run so far if it is time to, and return whether it was written."""
         now = self._clock()
         if self._lock is not None:
             self._lock.keep()
@@ -178,12 +159,7 @@ class Checkpoint:
     def finish(self, dataset: xr.Dataset) -> Path:
         """Write the finished run under its own name, remove the part, and return the file.
 
-        Raises
-        ------
-        DiskFullError
-            If the disk is full; the part that was written before is kept.
-        FileError
-            If a file of that name has appeared during the run; the finished run is kept as the part.
+        If a file of that name has appeared during the run, the finished run is kept as the part.
         """
         self.save(dataset)
         if self.path.exists() and not self._force:

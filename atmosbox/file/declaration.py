@@ -131,18 +131,6 @@ SUFFIXES = ("_se", "_count", "_theory", "_tolerance")
 def derived(parent: Variable, suffix: str) -> Variable:
     """Return the declaration of a variable's standard error, number of samples, closed-form answer or tolerance.
 
-    Parameters
-    ----------
-    parent
-        The variable that is measured.
-    suffix
-        One of `SUFFIXES`.
-
-    Returns
-    -------
-    Variable
-        The declaration of the derived variable.
-
     Examples
     --------
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure of the air on the walls")

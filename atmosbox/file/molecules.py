@@ -85,24 +85,9 @@ class Molecules(NamedTuple):
 
 
 def molecules(dataset: xr.Dataset, *otherwise: Given | str) -> Molecules:
-    """Return the molecules of a run and their box.
+    """Return the molecules of a run with ``--save-molecules``, or of a planar scene, and their box.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A run with ``--save-molecules``, or one of a planar scene, which always keeps its discs.
-    *otherwise : str or Given
-        What else a user can do if there are no molecules: the end of the error message.
-
-    Returns
-    -------
-    Molecules
-        The molecules.
-
-    Raises
-    ------
-    FileError
-        If the run holds no molecules or no frame, or does not describe the box around the molecules.
+    If there are none, the message ends with `otherwise`: what else a user can do.
 
     Examples
     --------

@@ -63,18 +63,6 @@ class OutputLock:
     The system holds the lock as long as the process lives, so a process that was killed leaves a file but no lock.
     If the file system has no locks, or the owner is on another computer, the content of the file decides.
 
-    Parameters
-    ----------
-    path
-        The file that is to be written.
-
-    Raises
-    ------
-    BusyError
-        If another process is writing the file.
-    FileError
-        If the lock cannot be made.
-
     Examples
     --------
     >>> import tempfile

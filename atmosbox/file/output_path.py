@@ -49,33 +49,6 @@ def named(
 ) -> tuple[Path, str]:
     """Return the output path and the format, from the suffix or from `format`; refuse a path that cannot be written.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The file; its suffix says the format, or is added if only `format` says it.
-    format : str or None
-        The format, if the suffix does not say it.
-    formats : tuple of str
-        The known formats.
-    force : bool
-        Whether a file of that name may be replaced.
-    what : str
-        What is in the file: used as the file name in an example.
-
-    Returns
-    -------
-    pathlib.Path
-        The file, with a suffix.
-    str
-        The format.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written, for one of the reasons of `check_writable`.
-    SettingError
-        If the format is unknown, is not given, or differs from the suffix.
-
     Examples
     --------
     >>> str(named("parcel", "svg", ("png", "svg"), force=True)[0])
@@ -98,29 +71,8 @@ def named(
 def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc") -> Path:
     """Refuse an output path that cannot be written, before the run begins; write nothing.
 
-    Parameters
-    ----------
-    path
-        The file that is to be written.
-    force
-        Whether it may replace a file.
-    example
-        File name that the error message suggests.
-
-    Returns
-    -------
-    pathlib.Path
-        The file to write: `path`, or what it points to if it is a symbolic link.
-
-    Raises
-    ------
-    FileError
-        If the folder is missing or may not be written to, if the name is empty, too long or a folder's, or if there
-        is a file already and `force` is not given.
-    DiskFullError
-        If there is no space even for a small file.
-    SettingError
-        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+    Return the file to write: the path, or what it points to if it is a symbolic link. `example` is the file name that a
+    message suggests.
 
     Examples
     --------
@@ -179,13 +131,6 @@ def run_is_there(path: AnyPath) -> bool:
 def unused(path: AnyPath, taken: Callable[[Path], bool] = os.path.lexists) -> Path:
     """Return a path that is not in use: this one, or else NAME-2, NAME-3 and so on with the same suffix.
 
-    Parameters
-    ----------
-    path
-        The default path of an output file.
-    taken
-        Function that returns whether a path is in use.
-
     Examples
     --------
     >>> import tempfile
@@ -214,12 +159,7 @@ def whole_path(part: AnyPath) -> Path:
 def clear(path: Path, *, everything: bool = False) -> None:
     """Remove the temporary files of a file that were left by programs which were killed.
 
-    Parameters
-    ----------
-    path
-        The file.
-    everything
-        Whether to remove all temporary files, because no other program can be writing the file.
+    With `everything`, remove all of them, because no other program can be writing the file.
 
     Examples
     --------
@@ -255,18 +195,6 @@ def whole_file(path: Path) -> Iterator[Path]:
     If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
     is killed leaves the temporary file, and the next program that writes the same file removes it.
 
-    Parameters
-    ----------
-    path
-        The file, which `check_writable` has checked.
-
-    Raises
-    ------
-    DiskFullError
-        If the disk is full.
-    FileError
-        If the file cannot be written for another reason.
-
     Examples
     --------
     >>> import tempfile
@@ -293,21 +221,9 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def write_whole(path: Path, content: bytes | memoryview) -> None:
-    """Write a file whole or not at all.
+    """Write a file, which `check_writable` or `named` has checked, whole or not at all.
 
-    Parameters
-    ----------
-    path
-        The file, which `check_writable` or `named` has checked.
-    content
-        Its content.
-
-    Raises
-    ------
-    DiskFullError
-        If the disk is full; a file that was there before is kept.
-    FileError
-        If the file cannot be written for another reason.
+    A file that was there before is kept if the disk is full.
 
     Examples
     --------
@@ -322,14 +238,7 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
 
 
 def write_failure(error: OSError, path: Path) -> FileError:
-    """Return the error to raise for a failure to write a file.
-
-    Parameters
-    ----------
-    error
-        What the system reported.
-    path
-        The file that was to be written.
+    """Return the error to raise for what the system reported when a file was to be written.
 
     Examples
     --------

@@ -24,16 +24,6 @@ FORMAT = 1
 def moment() -> str:
     """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that a repeated run can give an identical file.
 
-    Returns
-    -------
-    str
-        For example ``2026-11-21T11:18:00Z``.
-
-    Raises
-    ------
-    SettingError
-        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
-
     Examples
     --------
     >>> len(moment())
@@ -50,21 +40,6 @@ def moment() -> str:
 
 def history_line(command: str | Sequence[str]) -> str:
     """Return the line that a command adds to a file's history: the time in UTC and the command.
-
-    Parameters
-    ----------
-    command
-        The command as typed, or its words.
-
-    Returns
-    -------
-    str
-        For example ``2026-11-21T11:18:00Z: atmosbox run lifting-dry --seed 7``.
-
-    Raises
-    ------
-    SettingError
-        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
 
     Examples
     --------
@@ -144,21 +119,6 @@ def global_attributes(
 
 def parameters(dataset: xr.Dataset) -> dict[str, Any]:
     """Return everything that determines a run, so that it can be repeated.
-
-    Parameters
-    ----------
-    dataset
-        A run.
-
-    Returns
-    -------
-    dict
-        ``scene``, ``settings``, ``engine`` and ``version``, as they were given to `global_attributes`.
-
-    Raises
-    ------
-    FileError
-        If the dataset has no such attribute, or the attribute is not a JSON object.
 
     Examples
     --------

@@ -54,19 +54,8 @@ def free_memory() -> float:
 def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     """Refuse an open file that does not fit into memory, or is not as atmosbox writes it; load nothing.
 
-    Parameters
-    ----------
-    file
-        The open file.
-    source
-        Its path.
-
-    Raises
-    ------
-    FileError
-        If it declares more numbers than it can hold or than fit into memory; if an attribute that should hold JSON
-        holds something else; if a headline has no variable; or if a variable of atmosbox has other dimensions or no
-        units, holds text where numbers belong, or nothing at all.
+    It may not declare more numbers than it can hold; attributes that should hold JSON must do so; a headline needs its
+    variable; and a variable of atmosbox its dimensions, its units, and numbers or text as it is declared.
     """
     declared = float(sum(_bytes(each) for each in file.variables.values()))
     if declared > max(SMALL, DENSEST * source.stat().st_size):

@@ -226,23 +226,6 @@ VARIABLES: dict[str, Variable] = {
 def variable(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> Variable:
     """Return the declaration of a variable, or of its standard error, number of samples, theory or tolerance.
 
-    Parameters
-    ----------
-    name
-        A name in `VARIABLES`, or one with ``_se``, ``_count``, ``_theory`` or ``_tolerance`` behind it.
-    own
-        The variables that a scene declares, by name.
-
-    Returns
-    -------
-    Variable
-        The declaration.
-
-    Raises
-    ------
-    KeyError
-        If nothing of that name is declared.
-
     Examples
     --------
     The error of a temperature is a difference of temperatures, so 1 K is not -272.15 degC:

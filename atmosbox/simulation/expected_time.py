@@ -53,11 +53,6 @@ class ExpectedTime(NamedTuple):
 def expected_time(prepared: Prepared) -> ExpectedTime | None:
     """Return the expected time of a run; None if no similar run was measured.
 
-    Parameters
-    ----------
-    prepared
-        From `atmosbox.simulation.preparation.prepare`.
-
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare

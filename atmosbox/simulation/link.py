@@ -89,13 +89,7 @@ class Replay:
         return self.frames or max(setup.frames, last)
 
     def check(self, setup: Setup) -> None:
-        """Refuse a turn of a knob that the scene does not have, or outside its range.
-
-        Raises
-        ------
-        SettingError
-            If so.
-        """
+        """Refuse a turn of a knob that the scene does not have, or outside its range."""
         knobs = {knob.name: knob for knob in setup.knobs}
         for turn in self.turns:
             knob = knobs.get(turn.name)
@@ -136,17 +130,9 @@ class Replay:
 
 
 def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
-    """Return the scene, the settings and the turns of a link.
+    """Return the scene, the settings and the turns of a link: an address of a page, or its part from ``#`` on.
 
-    Parameters
-    ----------
-    text
-        An address of a page, or its part from ``#`` on.
-
-    Raises
-    ------
-    SettingError
-        If it is no link of a run, was cut off, or is that of another version.
+    A link that was cut off, or is that of another version, is refused.
 
     Examples
     --------
@@ -182,13 +168,7 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
 
 
 def _refuse(link: str, problem: str) -> NoReturn:
-    """Refuse a link.
-
-    Raises
-    ------
-    SettingError
-        Always.
-    """
+    """Refuse a link."""
     raise SettingError("replay", link, problem, "copy the link again from the page, as a whole and in quotes")
 
 
@@ -210,19 +190,7 @@ def replayed(
 ) -> Prepared:
     """Return the scene of a link, ready to run as the page ran it.
 
-    Parameters
-    ----------
-    text
-        An address of a page, or its part from ``#`` on.
-    scene
-        The path of the scene, if it is one of your own: a link alone never makes atmosbox run a program.
-    save_molecules
-        As in `prepare`.
-
-    Raises
-    ------
-    AtmosboxError
-        If the link, its scene or one of its settings is refused.
+    `scene` is its path if it is one of your own: a link alone never makes atmosbox run a program.
 
     Examples
     --------
@@ -245,13 +213,7 @@ def replayed(
 
 
 def check_nothing_changes(what: str, given: Mapping[str, object]) -> None:
-    """Refuse options that would change a run that is already determined.
-
-    Raises
-    ------
-    SettingError
-        If any is given.
-    """
+    """Refuse options that would change a run that is already determined."""
     for name, value in given.items():
         if value is not None and value != []:
             raise SettingError(name, None, f"cannot change {what}", "leave it out")

@@ -192,13 +192,7 @@ def _takes_engine(module: ModuleType) -> bool:
 
 
 def build(prepared: Prepared) -> Setup:
-    """Return the box of a scenario at its start.
-
-    Raises
-    ------
-    AtmosboxError
-        If it cannot be built; the message says why.
-    """
+    """Return the box of a scenario at its start."""
     try:
         engine = [prepared.engine] if _takes_engine(prepared.module) else []
         setup: Setup = prepared.module.build(prepared.settings, *engine)

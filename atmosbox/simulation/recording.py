@@ -126,15 +126,8 @@ class Recording:
     ) -> tuple[xr.Dataset, tuple[Headline, ...]]:
         """Return all that has been measured so far, with the values of the theory.
 
-        Parameters
-        ----------
-        status
-            State of the run, for the attribute of that name.
-        settle
-            Number of frames that averages leave out; None for the number that the scene sets, after the last turn of a
-            knob.
-        judged
-            Whether to compute the scene's headlines; there are none if a knob was turned.
+        Averages leave out `settle` frames; by default the number that the scene sets, after the last turn of a knob.
+        The scene's headlines are computed if they are to be `judged`; there are none if a knob was turned.
         """
         from atmosbox.file.dataset import dataset, extended
         from atmosbox.file.declaration import Variable
