@@ -99,7 +99,7 @@ def _measured_seconds(prepared: Prepared) -> float | None:
         whole = {**defaults, **way.settings}
         if way.engine == str(prepared.engine) and all(settings[name] == whole[name] for name in words):
             cost.append(math.log(way.cost))
-            far.append([_log_ratio(whole[name], settings[name]) for name in sizes])
+            far.append([_log_ratio(float(whole[name]), float(settings[name])) for name in sizes])
     there = np.isfinite(np.array(far).reshape(len(cost), len(sizes))).all(axis=1)
     if not there.any():
         return None
