@@ -9,7 +9,7 @@ import xarray as xr
 
 import atmosbox as ab
 from atmosbox import errors
-from atmosbox.interface import inline_page
+from atmosbox.interface import drawing
 from tests.few_frames import cut
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -63,7 +63,7 @@ def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
 
 
 def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
-    monkeypatch.setattr(inline_page, "in_notebook", lambda: True)
+    monkeypatch.setattr(drawing, "in_notebook", lambda: True)
     file = tmp_path / "notebook.html"
     file.write_text(f"<body>{ab.show(boxed, height=500)._repr_html_()}</body>", encoding="utf-8")
     tab = browser.new_page(viewport={"width": 1000, "height": 600})

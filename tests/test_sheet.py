@@ -17,10 +17,9 @@ from atmosbox import scenarios, theory
 from atmosbox import sheet as sheets
 from atmosbox.cli import app
 from atmosbox.errors import ConfigError
-from atmosbox.sheet.number_text import measured, theoretical
 from atmosbox.sheet.pdf import PAPERS, pdf
 from atmosbox.sheet.sheet_run import Trial, execute
-from atmosbox.sheet.sums import Measured, filled
+from atmosbox.sheet.sums import Measured, filled, measured, theoretical
 from atmosbox.sheet.text import SECTIONS, read, text_of
 from atmosbox.simulation import runner
 from tests.few_frames import FRAMES, cut

@@ -15,7 +15,7 @@ from atmosbox.cli.option import Force, Json, Theme, Verbose, out_option, quiet_o
 from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say, say_json, tell, width
 from atmosbox.errors import SettingError
-from atmosbox.text.comparison_table import comparison_lines
+from atmosbox.text.report import comparison_lines
 
 if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming

@@ -1,7 +1,6 @@
 """Files: what a file of a run contains, and how files are written and read.
 
-`declaration`  how a variable of a file is declared
-`variables`    every variable that a run can put into its file, declared once
+`variables`    how a variable of a file is declared, and every one that a run can put there
 `dataset`      the dataset of a run, with CF names and units
 `provenance`   where a file comes from: settings, seed, versions
 `output_lock`  one writer for one file

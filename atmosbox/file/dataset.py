@@ -14,8 +14,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from atmosbox.errors import EngineError
-from atmosbox.file.declaration import SUFFIXES, Variable, derived
-from atmosbox.file.variables import VARIABLES, variable
+from atmosbox.file.variables import SUFFIXES, VARIABLES, Variable, derived, variable
 
 __all__ = ["VARIABLES", "Variable", "dataset", "extended", "headline_variables", "variable"]
 

@@ -1,14 +1,12 @@
 """The public functions of `atmosbox`, which scripts and notebooks call.
 
 Read in this order: `notebook` (detects a notebook, and shows progress in it), `run_dataset` (a dataset that prints
-its results first), `measurement` (`run`, `resume`, `open`), `grid` (`sweep`), `drawing` (`plot`, `compare`),
-`inline_page` (`show`), `catalogue` (`scenes`). Large libraries are imported when a function needs them.
+its results first), `measurement` (`run`, `resume`, `open`, `sweep`), `drawing` (`plot`, `compare`, `show`), `catalogue`
+(`scenes`). Large libraries are imported when a function needs them.
 """
 
 from atmosbox.interface.catalogue import Printed, scenes
-from atmosbox.interface.drawing import Comparison, compare, plot
-from atmosbox.interface.grid import sweep
-from atmosbox.interface.inline_page import InlinePage, show
-from atmosbox.interface.measurement import open, resume, run
+from atmosbox.interface.drawing import Comparison, InlinePage, compare, plot, show
+from atmosbox.interface.measurement import open, resume, run, sweep
 
 __all__ = ["Comparison", "InlinePage", "Printed", "compare", "open", "plot", "resume", "run", "scenes", "show", "sweep"]

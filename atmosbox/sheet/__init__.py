@@ -3,10 +3,10 @@
 The text of a sheet is in a file beside its scene, ``my_scene.sheet.toml``; for a scene without such a file, a sheet is
 made from its model card and its headlines.
 
-Read in this order: `text` (the text, read from its file) with `sums`, `number_text` and `marks` (which sums, numbers
-and marks a text may contain), `sheet_run` (the runs), `generic` (the text for any scene), `worksheet` (text and runs
-together as Markdown, by the template ``sheet.md.jinja``), `pdf` and `html` (the Markdown on paper and as a web page),
-`sheet_file` (the file).
+Read in this order: `text` (the text, read from its file) with `sums` and `marks` (which sums and marks a text may
+contain, and how numbers are printed), `sheet_run` (the runs), `generic` (the text for any scene), `worksheet` (text and
+runs together as Markdown, by the template ``sheet.md.jinja``), `pdf` and `html` (the Markdown on paper and as a web
+page), `sheet_file` (the file).
 """
 
 from atmosbox.sheet.pdf import PAPERS

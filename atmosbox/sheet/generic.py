@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from atmosbox.sheet.number_text import measured, spelled
 from atmosbox.sheet.sheet_run import Trial
+from atmosbox.sheet.sums import measured, spelled
 
 __all__ = ["WORDS", "AnyScene", "left_out"]
 

@@ -10,8 +10,8 @@ import numpy as np
 from atmosbox.file.variables import known, variable
 from atmosbox.scene.conversion import from_si, to_si
 from atmosbox.scene.panels import Line, Panel
-from atmosbox.sheet.number_text import bare, spelled
 from atmosbox.sheet.sheet_run import Trial
+from atmosbox.sheet.sums import bare, spelled
 from atmosbox.simulation.preparation import Prepared, build
 
 __all__ = ["graph_rows", "until"]

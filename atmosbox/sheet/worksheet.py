@@ -16,9 +16,8 @@ from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.generic import WORDS, AnyScene, left_out
 from atmosbox.sheet.graph_row import graph_rows, until
-from atmosbox.sheet.number_text import bare, fixed, measured, spelled, theoretical
 from atmosbox.sheet.sheet_run import Trial, execute, trials
-from atmosbox.sheet.sums import Facts, filled
+from atmosbox.sheet.sums import Facts, bare, filled, fixed, measured, spelled, theoretical
 from atmosbox.sheet.text import SECTIONS, Change, read, text_of
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build

@@ -130,7 +130,7 @@ class Recording:
         The scene's headlines are computed if they are to be `judged`; there are none if a knob was turned.
         """
         from atmosbox.file.dataset import dataset, extended
-        from atmosbox.file.declaration import Variable
+        from atmosbox.file.variables import Variable
 
         setup, settings, module = self.setup, self.prepared.settings, self.prepared.module
         own = {

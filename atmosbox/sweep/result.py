@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from atmosbox.file.declaration import Variable, derived
 from atmosbox.file.provenance import global_attributes
+from atmosbox.file.variables import Variable, derived
 from atmosbox.scene.conversion import declared_unit, to_si
 from atmosbox.scene.settings import Parameter, Value
 from atmosbox.sweep.plan import Plan, member_seed

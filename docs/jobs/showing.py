@@ -13,7 +13,7 @@ import atmosbox
 from atmosbox.page import save
 from atmosbox.plot.compare import compared, naming
 from atmosbox.plot.compare.figure import drawn
-from atmosbox.text.comparison_table import comparison_lines
+from atmosbox.text.report import comparison_lines
 
 WIDTH, HEIGHT = 1280, 720
 FLAGS = "--no-sandbox --disable-gpu --disable-background-networking --enable-unsafe-swiftshader --use-angle=swiftshader"
