@@ -4,7 +4,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atmosbox.cli.config import Asked, load_config
+from atmosbox.cli.request import Asked, load_config
 from atmosbox.errors import ConfigError, FileError
 from atmosbox.scene.settings import SceneSettings, setting
 

@@ -12,7 +12,6 @@ from atmosbox.cli.application import command
 from atmosbox.cli.output_name import chosen, for_scene
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
-from atmosbox.simulation.link import check_nothing_changes
 from atmosbox.text.progress import progress
 
 
@@ -49,10 +48,12 @@ def lab(
     values as fit into it. In the page that live opens, all settings can be changed.
     """
     if every:
+        from atmosbox.cli.lab_folder import save_all
+        from atmosbox.simulation.link import check_nothing_changes
+
         given = {"scene": scene, "--set": values, "--config": config, "--from": source, "--seed": seed}
         given |= {"--engine": engine, "--accuracy": accuracy}
         check_nothing_changes("what --all writes", given)
-        from atmosbox.cli.lab_folder import save_all
 
         with prints_to_stderr(), progress("lab", quiet=quiet) as show:
             made = save_all(Path(out or "labs"), theme=theme, language=language, force=force, progress=show)

@@ -1,19 +1,148 @@
-"""Where the settings of a run come from: the command line, a settings file, an earlier run."""
+"""Where the settings of a run come from: the command line, a settings file, an earlier run.
+
+Which names and values are allowed is defined by the settings of the scene:
+:class:`atmosbox.scene.settings.SceneSettings`.
+"""
 
 from __future__ import annotations
 
 import os
 import re
 import shlex
+import tomllib
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.cli.terminal import prints_to_stderr, tell
-from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError
+from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError, shown
+from atmosbox.scene.settings import Value
+from atmosbox.scene.spelling import assignments, field_name, nearest
 
 if TYPE_CHECKING:
-    from atmosbox.cli.config import Asked
     from atmosbox.simulation.preparation import Prepared
+
+_LARGEST_CONFIG = 1_000_000  # bytes
+_WORDS = {
+    "scene": ("without a name", 'give the name of one, such as scene = "lifting-dry"'),
+    "engine": ("without a name", 'give the name of one, such as engine = "exact"'),
+    "accuracy": ("that is no text", 'give a target or an error in quotes, such as accuracy = "0.5K"'),
+}
+
+
+class Asked(NamedTuple):
+    """The request for a run by a settings file, by an earlier run or by the whole command line.
+
+    Parameters
+    ----------
+    scene
+        The name of the scene, or the path of its file; empty if none is named.
+    settings
+        The values as they were written, by name.
+    engine
+        The name of the engine, with its options; None if none is named.
+    save_molecules
+        Whether the molecules are saved; None if they take less than 10 MB.
+    accuracy
+        The requested accuracy, if any.
+    """
+
+    scene: str
+    settings: dict[str, Any]
+    engine: str | None = None
+    save_molecules: bool | None = False
+    accuracy: str | None = None
+
+    def for_a_page(self) -> Asked:
+        """Return the request with the exact engine, the one that a page contains, unless it names another."""
+        return self._replace(engine="exact") if self.engine is None and self.accuracy is None else self
+
+
+def load_config(path: str | os.PathLike[str]) -> Asked:
+    r"""Return the scene, the settings, and the engine or the accuracy that a TOML file asks for.
+
+    The file may name a scene, an engine or an accuracy, and hold one table of settings. It cannot run code::
+
+        scene = "lifting-dry"
+        accuracy = "lecture"
+
+        [settings]
+        temperature = "25degC"
+        molecules = 4000
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+
+    Returns
+    -------
+    Asked
+        The request.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read.
+    ConfigError
+        If it is not TOML, or holds anything else; the message names what.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "lift.toml")
+    ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
+    ...     load_config(path)
+    Asked(scene='lifting-dry', settings={'temperature': '25degC'}, engine=None, save_molecules=False, accuracy=None)
+    """
+    where = shown(os.fspath(path), longest=4096)
+    try:
+        with open(path, "rb") as file:
+            raw = file.read(_LARGEST_CONFIG + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a path"
+        raise FileError(f"{where} cannot be read ({reason}): give the path of a settings file.") from error
+    content = _toml(raw, where)
+
+    def refusal(key: str, problem: str, fix: str) -> ConfigError:
+        return ConfigError(f"{where} has {shown(key)} {problem}: {fix}.")
+
+    known = (*_WORDS, "settings")
+    for key in sorted(content.keys() - set(known)):
+        near = nearest(key, known)
+        fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
+        raise refusal(key, "outside the table [settings]", fix)
+    settings = content.get("settings", {})
+    words: dict[str, str | None] = {}
+    for key, (problem, fix) in _WORDS.items():
+        word = content.get(key)
+        if word is not None and not (isinstance(word, str) and word.strip()):
+            raise refusal(key, problem, fix)
+        words[key] = word and word.strip()
+    if not isinstance(settings, dict):
+        raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
+    for key, value in settings.items():
+        if not isinstance(value, Value):
+            fix = 'give one number, true, false or a text in quotes, such as "25degC"'
+            raise refusal(key, "that is no number, switch or text", fix)
+    return Asked(words["scene"] or "", settings, words["engine"], accuracy=words["accuracy"])
+
+
+def _toml(raw: bytes, where: str) -> dict[str, Any]:
+    """Return the content of a settings file, or raise ConfigError."""
+    if raw.startswith((b"\x89HDF", b"CDF")):
+        raise ConfigError(f"{where} is a netCDF file, not a settings file: give it with --from {where}.")
+    if len(raw) > _LARGEST_CONFIG or b"\0" in raw:
+        raise ConfigError(f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8.")
+    try:
+        return tomllib.loads(raw.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise ConfigError(f"{where}, line {line} is not UTF-8 text: save the file as UTF-8.") from error
+    except (ValueError, RecursionError) as error:
+        fix = 'write one name = value a line, with text in quotes, such as temperature = "25degC"'
+        raise ConfigError(f"{where} is not TOML ({shown(str(error), longest=200)}): {fix}.") from error
+
 
 WARM = 100.0  # degC: above it, a number without a unit may have been meant in kelvin
 
@@ -56,9 +185,6 @@ def gather(
     >>> gather("lifting-dry", ["temperature=25degC"], seed="7").settings
     {'temperature': '25degC', 'seed': '7'}
     """
-    from atmosbox.cli.config import Asked, load_config
-    from atmosbox.scene.spelling import assignments
-
     scene = scene or ""
     settings: dict[str, Any] = {}
     of_file: str | None = None
@@ -87,7 +213,6 @@ def gather(
 
 def checked(asked: Asked) -> Prepared:
     """Return the scene of a request, checked; say how a high temperature without a unit was taken."""
-    from atmosbox.scene.spelling import field_name
     from atmosbox.simulation import runner
 
     with prints_to_stderr():
@@ -106,7 +231,6 @@ def with_fewer_molecules(asked: Asked) -> Asked:
     Numbers that the user gave are kept; what was taken instead of the scene's own is said.
     """
     from atmosbox.lab.wasm_module import SCENES
-    from atmosbox.scene.spelling import field_name
 
     few = SCENES.get(asked.scene.replace("_", "-"), {})
     if not few or asked.accuracy is not None or {field_name(name) for name in asked.settings} & {"molecules", *few}:
@@ -123,7 +247,6 @@ def is_path(scene: str) -> bool:
 
 def _earlier(path: str) -> Asked:
     """Return the request that made the run in a file."""
-    from atmosbox.cli.config import Asked
     from atmosbox.file.netcdf import read
     from atmosbox.file.provenance import parameters
     from atmosbox.version import __version__
@@ -158,7 +281,5 @@ def _agreed(scene: str, named: str, option: str, path: str, error: type[Atmosbox
 
 def _over(settings: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings with new values in place of old ones; names may be spelled with - or _."""
-    from atmosbox.scene.spelling import field_name
-
     new = {field_name(name) for name in values}
     return {**{name: value for name, value in settings.items() if field_name(name) not in new}, **values}
