@@ -93,15 +93,7 @@ def _atmosbox(
 
 
 def command(*examples: str, name: str | None = None) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that makes a function a command whose errors end it as `guarded` says.
-
-    Parameters
-    ----------
-    examples
-        Lines to print below its help.
-    name
-        Its name; that of the function if none is given.
-    """
+    """Return a decorator that makes a function a command whose errors end it as `guarded` says."""
 
     def added(function: Callable[P, R]) -> Callable[P, R]:
         return app.command(name, cls=Command, epilog=_examples(*examples))(guarded(function))

@@ -59,18 +59,7 @@ class Conventions(NamedTuple):
 
 
 def conventions(path: Path) -> Conventions:
-    """Check with the program compliance-checker, if it is installed, whether a file follows CF-1.11.
-
-    Parameters
-    ----------
-    path
-        The file.
-
-    Returns
-    -------
-    Conventions
-        The result of the check.
-    """
+    """Check with the program compliance-checker, if it is installed, whether a file follows CF-1.11."""
     # A compliance-checker beside this Python is preferred to another that a shell would find.
     places = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     program = shutil.which(CHECKER, path=places)

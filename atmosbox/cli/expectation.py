@@ -18,16 +18,7 @@ def expectation_lines(
 ) -> list[str]:
     """Return the lines that say which engine and settings were picked, which errors are expected and which were found.
 
-    Parameters
-    ----------
-    expectation
-        The expected errors; None if no accuracy was asked for, or the engine was not measured at these settings.
-    headlines
-        The results of the run; empty before it.
-    engine
-        The engine with its options; empty for the default engine of the scene.
-    width
-        Number of columns that the lines may take.
+    There are no `headlines` before the run; `engine` is empty for the default engine of the scene.
     """
     if expectation is None:
         if not engine:

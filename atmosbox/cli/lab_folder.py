@@ -62,13 +62,7 @@ def save_all(
     progress: Callable[[float, str], None] = lambda share, name: None,
     scenes: Collection[str] = (),
 ) -> list[Path]:
-    """Write the pages of some scenes, or of all that can run in one, and ``index.html``; return the paths, index first.
-
-    Raises
-    ------
-    AtmosboxError
-        If a file is there and may not be replaced, or cannot be written.
-    """
+    """Write the pages of some scenes, or of all, and ``index.html``; return the paths, index first."""
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.lab import save_lab
     from atmosbox.lab.wasm_module import SCENES

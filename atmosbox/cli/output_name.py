@@ -31,11 +31,6 @@ def for_scene(scene: str, ending: str = ".nc") -> Path:
 def beside(files: Sequence[str], kind: str) -> Path:
     """Return the path of an output file of this kind, beside the first file and named after all files.
 
-    Raises
-    ------
-    FileError
-        If one of the files is a folder.
-
     Examples
     --------
     >>> str(beside(["runs/cold.nc", "warm.nc"], "png"))
@@ -54,18 +49,7 @@ def chosen(
 ) -> Path:
     """Return the path of the output file: the one that was asked for, or else the default, with a number if it exists.
 
-    Parameters
-    ----------
-    out
-        The text after ``--out``.
-    default
-        The default path.
-    force
-        Whether the file may be replaced: then the default path gets no number.
-    quiet
-        Whether not to say that there is a number.
-    files
-        Function that returns the files that are written for a path, if there are several.
+    `files` returns the files that are written for a path, if there are several.
     """
     if out is not None:
         return Path(out)

@@ -69,23 +69,6 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
         temperature = "25degC"
         molecules = 4000
 
-    Parameters
-    ----------
-    path
-        Path of the file.
-
-    Returns
-    -------
-    Asked
-        The request.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read.
-    ConfigError
-        If it is not TOML, or holds anything else; the message names what.
-
     Examples
     --------
     >>> import pathlib, tempfile
@@ -159,26 +142,8 @@ def gather(
 ) -> Asked:
     """Return the request for a run that the whole command line makes; its settings are not yet checked.
 
-    If a setting has two values, the later in this list counts: ``--from``, ``--config``, ``--set``, ``--seed``.
-
-    Parameters
-    ----------
-    scene
-        The name of a scene, or the path of its file; None if the file after ``--config`` or ``--from`` names it.
-    values
-        The texts after each ``--set``.
-    config, source
-        The files after ``--config`` and ``--from``.
-    seed, engine, accuracy
-        The texts after the options of these names.
-    save_molecules
-        Whether the molecules are saved; None if they were in the earlier run, or take less than 10 MB.
-
-    Raises
-    ------
-    AtmosboxError
-        If a file or a text cannot be understood, if two of them name different scenes, or if both an accuracy and an
-        engine are asked for.
+    If a setting has two values, the later in this list counts: ``--from``, ``--config``, ``--set``, ``--seed``. The
+    scene is None if one of the files names it.
 
     Examples
     --------

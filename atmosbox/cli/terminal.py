@@ -67,11 +67,6 @@ def stoppable() -> Iterator[None]:
     The command then removes files that are half written, and keeps what is complete. Python drops an exception that is
     raised in a function which a C library calls, as LLVM does while it compiles: such a signal is sent again. If it
     gets lost in another way, the block raises `Stopped` at its end.
-
-    Raises
-    ------
-    Stopped
-        When such a signal arrives.
     """
     names = {"SIGINT": INTERRUPTED, "SIGTERM": TERMINATED, "SIGHUP": HUNG_UP}
     status = {getattr(signal, name): code for name, code in names.items() if hasattr(signal, name)}
@@ -112,15 +107,7 @@ def stoppable() -> Iterator[None]:
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
     """Return a command that ends with one sentence and an exit status, whatever goes wrong in it.
 
-    Parameters
-    ----------
-    command
-        The function; its option ``verbose``, if it has one, shows the traceback of a bug.
-
-    Raises
-    ------
-    typer.Exit
-        With the status of the error.
+    Its option ``verbose``, if it has one, shows the traceback of a bug.
     """
 
     @functools.wraps(command)

@@ -40,16 +40,8 @@ def until(prepared: Prepared) -> str:
 def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
     """Return the rows of the table: for each measured curve its graph, its name, and a line for each run.
 
-    Parameters
-    ----------
-    runs
-        The runs; numbers are filled in for the runs that have been made.
-
-    Returns
-    -------
-    list of dict
-        ``graph``, ``curve`` with its unit, and ``lines``: for each run its letter, the value from the graph, the value
-        of theory, and the difference.
+    A line has the letter of the run and, if it has been made, the value from the graph, that of theory, and the
+    difference.
     """
     prepared = runs[0].prepared
     panels = prepared.module.panels

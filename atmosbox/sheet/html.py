@@ -36,11 +36,6 @@ _COLUMNS = 6
 def html(sheet: Worksheet) -> str:
     """Return a sheet as one HTML file: headings, a table with headers, fields with names, axes with a description.
 
-    Parameters
-    ----------
-    sheet
-        From `worksheet`.
-
     Examples
     --------
     >>> from atmosbox.sheet import worksheet

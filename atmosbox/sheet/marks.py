@@ -30,11 +30,6 @@ _HTML = {"<sub>", "</sub>", "<sup>", "</sup>"}
 def check(text: str) -> None:
     """Refuse a text with marks that are not printed: pictures, lists, headings, and all HTML except sub and sup.
 
-    Raises
-    ------
-    ConfigError
-        If the text has such a mark.
-
     Examples
     --------
     >>> check("p<sup>2/7</sup> is *not* a < b")
@@ -90,13 +85,6 @@ def blocks(text: str) -> list[Block]:
 
 def as_paragraph(tokens: Sequence[Token], size: float) -> str:
     """Return a line of Markdown as the text of a paragraph of reportlab.
-
-    Parameters
-    ----------
-    tokens
-        The tokens that `PARSER` found in the line.
-    size
-        The size of the type [points].
 
     Examples
     --------

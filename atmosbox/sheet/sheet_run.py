@@ -97,17 +97,7 @@ class Trial:
         return {} if self.outcome is None else {each.name: each for each in self.outcome.headlines}
 
     def fact(self, name: str) -> Any:
-        """Return a headline number, a setting, or a variable of the run by its name.
-
-        Parameters
-        ----------
-        name
-            The name, which is searched among the headlines, then the settings, then the variables.
-
-        Raises
-        ------
-        ConfigError
-            If nothing has this name, or if the run has not been made and the name is not that of a setting.
+        """Return a headline number, a setting, or a variable of the run by its name, searched in this order.
 
         Examples
         --------
@@ -138,20 +128,6 @@ class Trial:
 def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ...]:
     """Return the runs of a sheet: the first without a change, and one for each change.
 
-    Parameters
-    ----------
-    first
-        The scene with the settings that all runs share.
-    changes
-        The changes of the other runs; sums in them have been worked out.
-
-    Raises
-    ------
-    SettingError
-        If a changed value is not allowed.
-    ConfigError
-        If a change has no effect on the settings.
-
     Examples
     --------
     >>> fast = Change(title="ten times as fast", set={"ascent": 160})
@@ -170,26 +146,7 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
 
 
 def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | None = None) -> tuple[Trial, ...]:
-    """Make the runs of a sheet.
-
-    Parameters
-    ----------
-    asked
-        The runs.
-    progress
-        Called with the share that is done and a short text on the present step.
-
-    Returns
-    -------
-    tuple of Trial
-        The runs with their results.
-
-    Raises
-    ------
-    PhysicsError
-        If the energy budget of a run is not closed.
-    EngineError
-        If the engine cannot go on.
+    """Make the runs of a sheet, and return them with their results.
 
     Examples
     --------

@@ -241,11 +241,6 @@ def _typed(result: Any) -> str:
 def check(text: str) -> list[str | ast.expr]:
     """Return the pieces of a text, words and sums in turn; no sum is worked out.
 
-    Raises
-    ------
-    ConfigError
-        If a sum cannot be parsed, a brace is not closed, or the text contains a loop.
-
     Examples
     --------
     >>> check("{% for i in (1, 2) %}again{% endfor %}")

@@ -122,16 +122,6 @@ def _table(found: Any, entries: dict[str, tuple[Any, Any]], place: str) -> dict[
 def text_of(module: ModuleType) -> Path | None:
     """Return the file with the text of a scene's sheet; a variant without a file has that of its original scene.
 
-    Parameters
-    ----------
-    module
-        The scene, from `atmosbox.scenarios.load`.
-
-    Returns
-    -------
-    pathlib.Path or None
-        The file, None if there is none.
-
     Examples
     --------
     >>> from atmosbox import scenarios
@@ -146,24 +136,9 @@ def text_of(module: ModuleType) -> Path | None:
 
 
 def read(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read the text of a sheet.
+    """Read the text of a sheet: the entries of its file, and the defaults of those that it does not have.
 
-    Parameters
-    ----------
-    path
-        The file.
-
-    Returns
-    -------
-    dict
-        The entries of the file, and the defaults of those that it does not have; their sums are not yet worked out.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read.
-    ConfigError
-        If the file is not TOML, lacks an entry that a sheet needs, or has an unknown or wrong entry.
+    Its sums are not yet worked out.
 
     Examples
     --------

@@ -65,7 +65,10 @@ class Recording:
     setup: Setup
     attributes: dict[str, Any]
     times: list[float] = field(default_factory=lambda: [0.0])
+    seconds: float = 0.0
+    """Time that the run has taken."""
     busy: float = 0.0
+    """Processor time of the engine in it."""
     sampled: int = 0
     turned: int = 0
     """Number of turns of knobs that were made, of those of the link."""
@@ -98,7 +101,7 @@ class Recording:
     def advance(self, watch: Callable[[float], None]) -> None:
         """Advance to the end of the frame and measure; an interrupted frame continues with its next sample."""
         parcel = self.setup.parcel
-        frame = self.frames
+        frame, began = self.frames, time.perf_counter()
         snapshot: Snapshot | None = None
         self._turn_knobs()
         for sample in range(self.sampled + 1, self.setup.samples + 1):
@@ -108,6 +111,7 @@ class Recording:
             snapshot = parcel.snapshot()
             self.sample(snapshot)
         self.end_frame(parcel.snapshot() if snapshot is None else snapshot)
+        self.seconds += time.perf_counter() - began
 
     def _turn_knobs(self) -> None:
         """Turn the knobs that the link of the run turns before this frame."""

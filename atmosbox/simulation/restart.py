@@ -12,6 +12,7 @@ import hashlib
 import io
 import json
 import platform
+import warnings
 import zipfile
 from collections.abc import Callable
 from enum import Enum
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
     from atmosbox.simulation.recording import Recording
 
-__all__ = ["Restart", "UnkeptError", "check_alike", "described", "put_back", "read_state", "with_state"]
+__all__ = ["Restart", "check_alike", "described", "put_back", "read_state", "with_state"]
 
 FORMAT = 2
 """Version of the format that is written here."""
@@ -103,30 +104,28 @@ def _sources() -> str:
     return source_digest() if folder is None else folder.name
 
 
-def with_state(dataset: xr.Dataset, recording: Recording, seconds: float) -> xr.Dataset:
-    """Return a dataset with the state from which its run, which has taken some seconds, continues between two samples.
+def with_state(dataset: xr.Dataset, recording: Recording) -> xr.Dataset:
+    """Return a dataset of what a run has measured so far with the state from which it continues.
 
-    An `UnkeptError` is raised if an instrument of a user's own holds a value that no file can hold.
+    If an instrument of a user's own holds a value that no file can hold, warn and return the dataset as it is.
     """
     import xarray as xr
 
     from atmosbox.file.netcdf import STATE
 
-    try:
-        state = recording.setup.parcel.state()
-    except RefusedError as error:
-        raise UnkeptError(str(error)) from error
     known = {id(recording.setup.parcel), id(recording.setup), *map(id, _drivers(recording))}
     coder = _Coder(known, recording.prepared.module)
-    tree = {
-        "box": {"text": state.text, "memory": {name: coder.keep(piece) for name, piece in state.memory.items()}},
-        "instruments": [coder.attributes(each, f"instrument {k + 1}") for k, each in enumerate(recording.instruments)],
-        "times": coder.code(list(recording.times), "times"),
-        "sampled": recording.sampled,
-        "turned": recording.turned,
-        "busy": recording.busy,
-        "seconds": seconds,
-    }
+    try:
+        state = recording.setup.parcel.state()
+        tree = {
+            "box": {"text": state.text, "memory": {name: coder.keep(piece) for name, piece in state.memory.items()}},
+            "instruments": [coder.attributes(one, f"instrument {k}") for k, one in enumerate(recording.instruments, 1)],
+            "times": coder.code(list(recording.times), "times"),
+            **{name: getattr(recording, name) for name in ("sampled", "turned", "busy", "seconds")},
+        }
+    except (RefusedError, UnkeptError) as error:
+        warnings.warn(f"this run cannot be resumed, for {error} cannot be stored in a file", stacklevel=2)
+        return dataset
     head = json.dumps({"about": described(recording.prepared), "tree": tree}).encode()
     arrays = io.BytesIO()
     np.savez(arrays, *coder.arrays)
@@ -174,8 +173,8 @@ def check_alike(restart: Restart, prepared: Prepared) -> None:
             )
 
 
-def put_back(restart: Restart, recording: Recording) -> float:
-    """Restore the state of a file into a run that was just built, and return the time that the run has taken [s]."""
+def put_back(restart: Restart, recording: Recording) -> None:
+    """Restore the state of a file into a run that was just built."""
     tree = restart.tree
     try:
         with np.load(io.BytesIO(restart.content), allow_pickle=False) as stored:
@@ -188,7 +187,7 @@ def put_back(restart: Restart, recording: Recording) -> float:
         recording.sampled = int(tree["sampled"])
         recording.turned = int(tree["turned"])
         recording.busy = float(tree["busy"])
-        return float(tree["seconds"])
+        recording.seconds = float(tree["seconds"])
     except _DAMAGE as error:
         raise FileError(
             f"The state in {restart.source} is damaged or that of another run ({error})",

@@ -20,7 +20,7 @@ from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.link import check_nothing_changes, read_link, replayed
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
-from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, from_file, put_back, with_state
+from atmosbox.simulation.restart import Restart, check_alike, from_file, put_back, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
 if TYPE_CHECKING:
@@ -153,12 +153,11 @@ def _execute(
         prepared.replay.check(setup)
     frames = prepared.frames(setup)
     recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
-    last = spent = 0.0
+    last = 0.0
     if restart is not None:
-        spent = put_back(restart, recording)
+        put_back(restart, recording)
         if recording.frames >= frames:
             raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
-    warned = False
 
     def watch(now: float) -> None:
         nonlocal last
@@ -170,27 +169,15 @@ def _execute(
         dataset, headlines = recording.dataset(status)
         parcel = setup.parcel
         made = parcel.numerical_heat / (sum(parcel.energy()[:2]) or 1.0)
-        cost = (spent, parcel.contacts, parcel.ledger(), recording.busy)
+        cost = (recording.seconds, parcel.contacts, parcel.ledger(), recording.busy)
         return Outcome(dataset, headlines, *cost, made, parcel.escaped())
-
-    def resumable(dataset: xr.Dataset) -> xr.Dataset:
-        nonlocal warned
-        try:
-            return with_state(dataset, recording, spent)
-        except UnkeptError as error:
-            if not warned:
-                warned = True
-                warnings.warn(f"this run cannot be resumed, for {error} cannot be stored in a file", stacklevel=2)
-            return dataset
 
     try:
         while recording.frames < frames:
-            began = time.perf_counter()
             recording.advance(watch)
-            spent += time.perf_counter() - began
             watch(setup.parcel.time)
             if checkpoint is not None and recording.frames < frames:
-                checkpoint(lambda: resumable(recording.dataset("partial")[0]))
+                checkpoint(lambda: with_state(recording.dataset("partial")[0], recording))
         tell(1.0, "done")
         done = outcome("complete")
     except (StalledError, RefusedError) as error:
@@ -199,7 +186,7 @@ def _execute(
         partial = outcome("interrupted") if recording.frames else None
         if partial is not None and checkpoint is not None:
             with uninterrupted():
-                checkpoint.save(resumable(partial.dataset))
+                checkpoint.save(with_state(partial.dataset, recording))
         raise Interrupted(partial, getattr(stop, "exit_code", 130)) from None
     if checkpoint is not None:
         with uninterrupted():

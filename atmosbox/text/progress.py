@@ -18,23 +18,10 @@ Show = Callable[[float, str], None]
 
 @contextlib.contextmanager
 def progress(scene: str, *, quiet: bool, expected: str = "") -> Iterator[Show]:
-    """Show the progress of a run on stderr.
+    """Show the progress of a run on stderr; yield the function to call with the share that is done and the step.
 
-    Parameters
-    ----------
-    scene
-        The name of the scene.
-    quiet
-        Whether to show nothing.
-    expected
-        How long the run will take, in words; empty if that is not known.
-
-    Yields
-    ------
-    callable
-        Function to call with the fraction done, 0 to 1, and the name of the present step. A name such as "compiling
-        the engine, once" is shown when the step has taken a second, with or without a terminal; an engine that
-        was compiled before is ready sooner.
+    A step such as "compiling the engine, once" is shown when it has taken a second, with or without a terminal; an
+    engine that was compiled before is ready sooner. `expected` says how long the run will take.
     """
     if quiet:
         yield lambda fraction, doing: None

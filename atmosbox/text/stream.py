@@ -20,16 +20,6 @@ def say(text: str) -> None:
 
     If the reader, for example ``head``, has closed the pipe, the command goes on.
 
-    Parameters
-    ----------
-    text
-        The lines, without the end of the last line.
-
-    Raises
-    ------
-    AtmosboxError
-        If stdout cannot be written, for instance because it goes to a disk that is full.
-
     Examples
     --------
     >>> say("two\nlines")

@@ -111,19 +111,10 @@ def story(text: str, width: int) -> list[str]:
 
 
 def number(value: float, decimals: int | None = None, power: int = 0, sign: str = "") -> str:
-    """Return a number as text.
+    """Return a number as text, with six significant digits or the given decimals.
 
-    Parameters
-    ----------
-    value
-        The number.
-    decimals
-        Number of digits after the decimal point, negative to round to tens or hundreds; None for six significant
-        digits.
-    power
-        The power of ten that is taken out: 9 shows 1.5e9 as 1.5 and "e9".
-    sign
-        "+" to show the sign of a positive number too.
+    Negative decimals round to tens or hundreds. The power of ten is taken out: 9 shows 1.5e9 as 1.5 and "e9". The sign
+    "+" shows that of a positive number too.
 
     Examples
     --------
@@ -141,17 +132,8 @@ def number(value: float, decimals: int | None = None, power: int = 0, sign: str 
 def digits(value: float, error: float) -> tuple[int | None, int]:
     """Return the number of decimals to show of a measurement, and the power of ten to take out of it.
 
-    Parameters
-    ----------
-    value, error
-        The measurement and its standard error, of which two digits are shown.
-
-    Returns
-    -------
-    decimals : int or None
-        Number of decimals; None if there is no standard error.
-    power : int
-        Power of ten; zero for numbers that are easy to read without it.
+    Two digits of the standard error are shown; decimals are None if there is none. The power is zero for numbers that
+    are easy to read without it.
 
     Examples
     --------
