@@ -9,10 +9,12 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import AttractingParcelSet, ParcelSet
-from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Gas, Modes, aligned_records
+from atmosbox.engine.core.state import EVENT, MOLECULE, Gas, Modes, aligned_records
+from atmosbox.engine.exact.advance import Book
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW
-from atmosbox.engine.exact.rows import FEWEST, MOST, row_stride
+from atmosbox.engine.exact.layout import NUMBER, PLACES, Layout, describe, new_cells
+from atmosbox.engine.exact.rows import FEWEST, LONGEST, MOST, row_stride
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.errors import SettingError
@@ -20,13 +22,11 @@ from atmosbox.lab.kernels.averaging import BLOCKS, Average
 from atmosbox.lab.kernels.flowing import Flow as Wind
 from atmosbox.lab.kernels.flowing import can_flow
 from atmosbox.lab.kernels.gauging import Gauges
-from atmosbox.lab.kernels.laying_out import Column, Layout
-from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.picture import Picture
 from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
-from atmosbox.lab.moist_lab_box import hygrometer, liquid_picture, moisture
-from atmosbox.lab.start_plan import first_baths, is_drawn, start_of
+from atmosbox.lab.moist_lab_box import hygrometer, liquid_picture
+from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_lab_box import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
@@ -182,13 +182,7 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
         setup,
         well_gas(parcel) if attracts else _gas(arrays, layout),
         _ascent(arrays.ascent),
-        Book(
-            np.array([arrays.now]),
-            np.array([arrays.epoch_length]),
-            arrays.clocks,
-            np.array([arrays.start_energy]),
-            moisture(arrays),
-        ),
+        arrays.book,
         layout,
         _gauges(prepared, setup),
         *_averages(setup),
@@ -212,66 +206,34 @@ def _without_molecules(box: LabBox) -> LabBox:
 
 
 def _layout(arrays: Any) -> Layout:
-    """Return the present layout of the cells, with memory for other layouts."""
-    c = arrays.gas.cells
-    column = _column(arrays)
-    # rows begin as short as in Python, and grow when molecules are placed
-    places = FEWEST if arrays.modes.rows else ROW - 1
-    shape = [places, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
-    most = max(*shape[1:3], column.count.size) if column else int(_SPARE * max(shape[1:4]))
+    """Return the layout of the cells before molecules are placed, with memory for other cells."""
+    old, modes = arrays.layout, arrays.modes
+    shape, column = old.shape.copy(), old.column if modes.gravity and modes.rows else 0
+    shape[PLACES] = FEWEST if modes.rows else ROW - 1
+    numbers = shape[NUMBER : NUMBER + 3]
+    most = max(*numbers[:2], column.count.size) if column else int(_SPARE * max(numbers))
     edge = np.zeros((3, most + 3))
-    for axis in range(3):
-        edge[axis, : shape[1 + axis] + 1] = arrays.grid.edges[axis]
-    return Layout(np.array(shape), np.array([arrays.filled]), edge, float(arrays.size_radius[0]), column)
-
-
-def _column(arrays: Any) -> Any:
-    """Return the data from which the layers of cells of a column are chosen; 0 without gravity."""
-    if not arrays.modes.gravity:
-        return 0
-    gas, grid = arrays.gas, arrays.grid
-    weight = float(gas.kinds.table["mass"][gas.molecules["kind"]].mean()) * gas.box.gravity
-    most = max(grid.wanted, grid.number[2])
-    warmest = max(first_baths(gas.walls), default=0.0)
-    return Column(weight, warmest, grid.wanted, grid.thinnest, np.zeros(most, np.int64), np.zeros(most + 1))
+    edge[:, : old.edge.shape[1]] = old.edge
+    layout: Layout = old._replace(shape=shape, filled=old.filled.copy(), edge=edge, column=column)
+    return layout
 
 
 def _gas(arrays: Any, layout: Layout) -> Gas:
     """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if needed."""
     cells, number, modes = arrays.gas.cells, arrays.gas.molecules.size, arrays.modes
-    copies = cells.copies
-    many = cells.number_x * cells.number_y * cells.number_z
-    most = layout.edge.shape[1] - 1
+    many = math.prod(layout.shape[NUMBER : NUMBER + 3].tolist())
     if layout.column:
         many = cells.number_x * cells.number_y * layout.column.count.size
     elif modes.piston:
         many = int(_SPARE * many)
-    if layout.column or modes.piston:
-        cells = cells._replace(boundary=_larger(cells.boundary, (len(cells.boundary), 3, 2 * most), math.inf))
-        copies = copies._replace(
-            centre=_larger(copies.centre, (3, most), 0.0),
-            horizon=_larger(copies.horizon, (most,), math.inf),
-            slack=_larger(copies.slack, (most, 3), math.inf),
-            room=_larger(copies.room, (most,), 1.0),
-        )
-    short, long = ROW, _LONGER * cells.stride
-    if modes.rows:
-        short, long = (row_stride(places, modes.mixed) for places in (FEWEST, MOST))
-    row = aligned_records(many * long, np.dtype("u4")).view(np.ndarray)
-    events = aligned_records(number, EVENT)
-    slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
-    place = events.view(np.ndarray).view(np.uint8)
-    copies = copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
-    cells = cells._replace(row=row, stride=short, slot=slot, copies=copies)
-    gas: Gas = arrays.gas._replace(events=events, cells=cells, calendar=new_calendar(number))
+    words = many * (row_stride(MOST, modes.mixed) if modes.rows else _LONGER * cells.stride)
+    events, most = aligned_records(number, EVENT), layout.edge.shape[1] - 1
+    made = new_cells(events, layout.radius.size, words, most, cells.copies.radius, float(cells.copies.epoch[LONGEST]))
+    gas: Gas = arrays.gas._replace(events=events, cells=made, calendar=new_calendar(number))
+    if not modes.rows:
+        return gas._replace(cells=made._replace(boundary=cells.boundary, first=cells.first, span=cells.span))
+    describe(gas, layout, modes)
     return gas
-
-
-def _larger(table: Any, shape: tuple[int, ...], rest: float) -> Any:
-    """Return a table copied into a larger array, which is filled up with `rest`."""
-    made = np.full(shape, rest)
-    made[tuple(slice(0, number) for number in table.shape)] = table
-    return made
 
 
 def _ascent(ascent: Any) -> Any:

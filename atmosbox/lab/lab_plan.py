@@ -10,8 +10,8 @@ import numpy as np
 from atmosbox.file.variables import known
 from atmosbox.lab.drawing import drawing
 from atmosbox.lab.kernels.gauging import Reading
+from atmosbox.lab.kernels.gravity import can_set_gravity
 from atmosbox.lab.kernels.hygrometer import WaterReading
-from atmosbox.lab.kernels.pulling import can_pull
 from atmosbox.lab.lab_box import LabBox, lab_box
 from atmosbox.lab.lab_stage import COLDER, lab_stage, plain, running_panels
 from atmosbox.lab.memory_image import BASE, Image, image
@@ -336,7 +336,7 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     setup = box.setup
     # a knob of a user's own scene is a function in Python, of which the page knows nothing
     kept = [knob for knob in setup.knobs if knob.name in _KNOBS and box.prepared.scene in SCENES]
-    kept = [knob for knob in kept if knob.name != "gravity" or can_pull(box.modes)]
+    kept = [knob for knob in kept if knob.name != "gravity" or can_set_gravity(box.modes)]
     numbers: dict[str, Any] = {}
     for knob in kept:
         unit = declared_unit(knob.unit)

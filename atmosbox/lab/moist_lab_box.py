@@ -10,7 +10,6 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine.liquid.substance import Substance
 from atmosbox.lab.kernels.hygrometer import Hygrometer, Sampled
-from atmosbox.lab.kernels.moist_passing import Moisture
 from atmosbox.page.page_liquid import POOL, RAIN, SWELLING, places
 from atmosbox.scene.instruments import Leaving, MoistLift
 from atmosbox.scene.instruments.water import _CRITICAL
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.units import Scale
     from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_picture", "moisture", "theory_at"]
+__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_picture", "theory_at"]
 
 _WAY = 801
 """Number of values in the table of the adiabat of a parcel."""
@@ -34,18 +33,11 @@ _FARTHEST, _OFFSETS = 0.16, 41
 """If it rains: largest offset of the logarithm of pressure from the planned one, and number of offsets in the table."""
 
 
-def moisture(arrays: Any) -> Any:
-    """Return the liquid of a box; 0 if it has none."""
-    if arrays.reservoir is None:
-        return 0
-    return Moisture(arrays.reservoir, arrays.vapours, arrays.rotations, arrays.drops or 0)
-
-
 def hygrometer(prepared: Prepared, setup: Setup) -> Any:
     """Return the data of the instruments for the water of a box; 0 if it has none."""
     parcel: Any = setup.parcel
     arrays = parcel.arrays()
-    if arrays.reservoir is None:
+    if not arrays.modes.phases:
         return 0
     substance: Substance = arrays.substance
     scale, binding = setup.scale, float(substance.binding_energy)
@@ -54,7 +46,7 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
     moment, planned, log_pressure, adiabat = none, none, none, np.zeros((0, 0))
     level, around = none, none
     if lift is not None:
-        rains = arrays.reservoir.rain > 0.0
+        rains = arrays.book.moisture.reservoir.rain > 0.0
         moment, planned, log_pressure, adiabat = (
             _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
         )
@@ -140,7 +132,7 @@ def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tup
     kelvin, pressure = lift.curve(around)[middle], around[middle]
     told = theory_at(prepared, pressure, rains=True)
     water = told["humidity_mixing_ratio_theory"] + told["cloud_liquid_water_mixing_ratio_theory"]
-    heat = float(parcel.arrays().reservoir.nuclei) / (parcel.number - parcel.vapour)
+    heat = float(parcel.arrays().book.moisture.reservoir.nuclei) / (parcel.number - parcel.vapour)
     offsets = np.linspace(-_FARTHEST, _FARTHEST, _OFFSETS)
     rows = [
         law.parcel_path(p * np.exp(offsets), p, t, w, nuclei_heat=heat).temperature
@@ -200,8 +192,8 @@ def liquid_picture(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any,
     record = None if stage is None else stage.record
     water = 0 if record is None else int(record["water"])
     spread = places(water)
-    present = parcel.arrays().drops
-    drops = 0 if present is None else len(present.record)
+    arrays = parcel.arrays()
+    drops = len(arrays.book.moisture.drops.record) if arrays.modes.drops else 0
     return (
         np.zeros((max(len(spread), drops) + 1, 4), np.float32),
         np.zeros(1, np.int64),

@@ -39,7 +39,12 @@ def is_drawn(parcel: Any) -> bool:
     It cannot if the scene does not declare the start, or gives the places of the molecules.
     """
     modes, start = parcel.arrays().modes, parcel.start
-    if start is None or not parcel.number or not can_start(modes) or (modes.gravity and modes.mixed):
+    if (
+        start is None
+        or not parcel.number
+        or not can_start(modes)
+        or (modes.gravity and (modes.mixed or not modes.rows))
+    ):
         return False
     return not any(isinstance(p, Placed) or (isinstance(p, Rotating) and np.ndim(p.kT)) for p in start.parts)
 
@@ -71,7 +76,7 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
     equal = isinstance(moving, EqualSpeeds)
     kT = np.broadcast_to(0.0 if equal else np.asarray(moving.kT, np.float64), (n,))
     exact = not equal and moving.exact and n > 1 and kT.mean() > 0.0
-    has_layers = arrays.modes.gravity and arrays.grid is not None
+    has_layers = arrays.modes.gravity and arrays.modes.rows
     return Start(
         parts=np.array([_DRAWN[part.draws] for part in declared.parts], np.int64),
         numbered=_NUMBERED[places.numbered],

@@ -44,7 +44,8 @@ def lists(parcel: Any) -> Lists:
     """Return the lengths of the lists of neighbours, and the full depths of the wells."""
     arrays = parcel.arrays()
     stride = arrays.gas.vicinity.stride
-    return Lists(np.array([stride]), _LONGER * stride, arrays.full_depth, np.array([parcel.strength]), np.zeros(1))
+    due = np.zeros(1, np.int64)
+    return Lists(np.array([stride]), due, arrays.full_depth, np.array([parcel.strength]), np.zeros(1))
 
 
 def crowd(setup: Setup) -> Crowd:

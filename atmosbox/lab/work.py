@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from atmosbox.lab.kernels.moist_passing import has_moist_knobs
-from atmosbox.lab.kernels.pulling import can_pull
+from atmosbox.lab.kernels.gravity import can_set_gravity
+from atmosbox.lab.kernels.moist_knobs import has_moist_knobs
 from atmosbox.lab.kernels.starting import can_start
 from atmosbox.lab.lab_box import LabBox
 
@@ -30,7 +30,7 @@ def arguments(box: LabBox) -> dict[str, tuple[Any, ...]]:
         found["lead"] = (gas, ascent, book, 0.0)
     if can_start(box.modes):
         found["start"] = (gas, ascent, book, box.start, 0)
-    if can_pull(box.modes) and not box.attracts:
+    if can_set_gravity(box.modes) and not box.attracts:
         found["set_gravity"] = (gas, book, box.start, gauges, gas.box.gravity)
     found |= {
         "place": (gas, book, layout),

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from atmosbox.engine import Drops, Periodic, Substance
-from atmosbox.engine.liquid import drop_parcelset
+from atmosbox.engine.exact import parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 from tests.engine.boxes import SMOOTH, TURNING, WARM, apart, many_events
@@ -143,7 +143,7 @@ def is_lawful(parcel, waters, drops):
 @pytest.fixture
 def by_single_events(monkeypatch):
     """Make a box return after every event."""
-    monkeypatch.setattr(drop_parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(parcelset, "_CHUNK", 1)
 
 
 @many_events
@@ -242,7 +242,7 @@ def test_a_drop_that_has_swallowed_another_is_where_all_meet_it():
         assert parcel.time < 400.0
     # molecules within the larger radius fly out, and from then on no molecule comes in
     parcel.advance(parcel.time + 20.0)
-    assert parcel._cells.number_x > 2
+    assert parcel.arrays().gas.cells.number_x > 2
     for _ in range(100):
         parcel.advance(parcel.time + 0.1)
         centre, radius, _ = parcel.drops()

@@ -22,7 +22,7 @@ from atmosbox.engine import (
 )
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
-from atmosbox.engine.liquid import moist_parcelset
+from atmosbox.engine.exact import parcelset
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 from atmosbox.scene.statistics import block_average
@@ -137,7 +137,7 @@ def watched(parcel, check):
 @pytest.fixture
 def by_single_events(monkeypatch):
     """Make a box of the exact engine return after every event."""
-    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(parcelset, "_CHUNK", 1)
 
 
 # ------------------------------------------------------------------ energy and water
@@ -355,10 +355,10 @@ def test_rows_grow_where_many_leave_a_pool_at_once(number, crowded):
     # a small floor, from which more than fill a row, or the longest there is, come up within one mean free time
     volatile = liquid_of(Pool, water(1e6, binding_energy=2.0, diameter=0.05), number=number, nuclei=50.0)
     parcel = moist(volatile, 3, 0, sides=(3.0, 3.0, 60.0))
-    before = parcel._cells.stride
+    before = parcel.arrays().gas.cells.stride
     parcel.advance(0.05)
     assert parcel._crowded is crowded
-    assert parcel._cells.stride > before or crowded
+    assert parcel.arrays().gas.cells.stride > before or crowded
     assert parcel.evaporated > min(100, 0.8 * number)
     parcel.advance(5.0)
     is_lawful(parcel, number)

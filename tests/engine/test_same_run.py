@@ -29,7 +29,6 @@ from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
 from atmosbox.engine.exact import parcelset
-from atmosbox.engine.liquid import drop_parcelset, moist_parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
@@ -133,8 +132,7 @@ def looked_at(box):
 
 def chunks_of(monkeypatch, events):
     """Make the exact engines return to Python after so many events."""
-    for module in (parcelset, moist_parcelset, drop_parcelset):
-        monkeypatch.setattr(module, "_CHUNK", events)
+    monkeypatch.setattr(parcelset, "_CHUNK", events)
 
 
 @in_each_box

@@ -285,7 +285,8 @@ def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkey
     setup = build(prepare("nuclei", settings))
     most = []
     for frame in range(6):
-        rows = setup.parcel._cells.row.reshape(-1, setup.parcel._cells.stride)
+        cells = setup.parcel.arrays().gas.cells
+        rows = cells.row.reshape(-1, cells.stride)
         most.append(rows[:, 0].max())
         advance(setup, frame + 1, frame)
     assert 7 <= most[0] < 14 <= max(most) < 28

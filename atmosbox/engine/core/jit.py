@@ -77,7 +77,7 @@ class Kernel:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # copy and pickle look for special methods, which numba's object need not have
             raise AttributeError(name)
-        return getattr(self.compiled, name)
+        return getattr(self._run, name)
 
 
 def kernel(
@@ -96,8 +96,8 @@ def kernel(
     function
         A function of numbers, arrays and NamedTuples of them; no strings, no exceptions, no allocation in loops.
     entry
-        Whether Python calls it: then its machine code is kept on disk. A kernel that only other kernels call is always
-        inlined into them, so that flags passed as constants cost nothing.
+        Whether Python calls it: then its machine code is kept on disk. A kernel that another kernel calls is always
+        inlined into it, so that flags passed as constants cost nothing.
     early
         Whether its code is inserted into its callers before they are compiled: for the few lines of the innermost
         loop. It must have a single return (measured: with two, the loop takes 1.7 times as long).
@@ -125,8 +125,8 @@ def kernel(
 
         return compiler.compiled(function, **kind, allocates=allocates, parallel=parallel, kept=entry)
 
-    called = functools.partial(compiled, entry=entry, early=early)
-    alone = None if entry else functools.partial(compiled, entry=True, early=False)
+    called = functools.partial(compiled, entry=False, early=early)
+    alone = functools.partial(compiled, entry=True, early=False)
     return Kernel(function, called, alone, plain=plain)
 
 
@@ -158,21 +158,14 @@ def lowest_bit(bits):
 
 if COMPILED:
 
-    def _prefetch() -> Any:
-        from atmosbox.engine.core import compiler
+    def _of_the_compiler(function: Callable[..., Any]) -> Kernel:
+        """Return an instruction that `compiler` has under the name of this function."""
 
-        return compiler.prefetch
+        def made() -> Any:
+            from atmosbox.engine.core import compiler
 
-    def _lowest_bit() -> Any:
-        from atmosbox.engine.core import compiler
+            return getattr(compiler, function.__name__)
 
-        return compiler.lowest_bit
+        return Kernel(function, made)
 
-    def _by_reference() -> Any:
-        from atmosbox.engine.core import compiler
-
-        return compiler.by_reference
-
-    by_reference = Kernel(by_reference, _by_reference)
-    prefetch = Kernel(prefetch, _prefetch)
-    lowest_bit = Kernel(lowest_bit, _lowest_bit)
+    by_reference, prefetch, lowest_bit = (_of_the_compiler(each) for each in (by_reference, prefetch, lowest_bit))

@@ -32,50 +32,21 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.core.state import Cells, Copies, aligned_records
-from atmosbox.engine.exact.row_cells import (
-    MARGIN,
-    MOST_CELLS,
-    cell_numbers,
-    cell_widths,
-    filled_share,
-    widths_for_rows,
-    write_layers,
-    write_slots,
-)
+from atmosbox.engine.exact.row_cells import MARGIN, MOST_CELLS, cell_widths, filled_share, write_layers
 
-__all__ = [
-    "ROW",
-    "Grid",
-    "append",
-    "choose_grid",
-    "new_cells",
-    "new_rows",
-    "overlapped",
-    "remove",
-    "size_classes",
-    "slot_at",
-]
+__all__ = ["ROW", "Grid", "append", "choose_grid", "overlapped", "remove", "size_classes", "slot_at"]
 
 _FEW = 4
 _LEAST_REACH = 1e-9
 """Smallest radius that a molecule is assumed to have, relative to the box: a point too is in two cells at an edge."""
 ROW = 32
+"""Number of words of a row at first, where rows hold no copies."""
 
 
 class Grid(NamedTuple):
-    """Cells and slots along the three axes: see `state.Cells`.
-
-    ``edges`` of the cells along each axis [length]; ``wanted``: the number of layers of unequal thickness that was
-    intended, 0 if all cells are alike, and ``thinnest``: their least thickness [length]; ``rows``: whether the rows
-    may hold copies of trajectories.
-    """
+    """Cells without copies, and slots along the three axes: see `state.Cells`."""
 
     number: tuple[int, int, int]
-    edges: tuple[NDArray[np.float64], ...]
-    wanted: int
-    thinnest: float
-    rows: bool
     boundary: NDArray[np.float64]
     first: NDArray[np.int32]
     span: NDArray[np.int32]
@@ -119,10 +90,8 @@ def choose_grid(
     filled: float,
     open_top: bool,
     scale_height: float,
-    rows: bool,
-    layers: NDArray[np.float64] | None = None,
 ) -> Grid:
-    """Choose the cells of a box: some two to ten molecules to a cell, layers thinner where gravity makes the gas dense.
+    """Choose cells without copies: some two to eight molecules to a cell, layers thinner where gravity makes gas dense.
 
     Parameters
     ----------
@@ -144,11 +113,6 @@ def choose_grid(
         Whether the ceiling moves, so that the uppermost cells must have no end.
     scale_height
         kT / m g, ``inf`` without gravity [length].
-    rows
-        Whether rows of cells may hold copies of trajectories; they need cells wider than any molecule, and four or more
-        along a periodic axis.
-    layers
-        The edges of the layers [length], unless they follow from the scale height.
 
     Raises
     ------
@@ -159,19 +123,13 @@ def choose_grid(
     # the most cells along an axis that are wider than a molecule
     most = [length[axis] / (2.002 * biggest) if biggest > 0.0 else math.inf for axis in range(3)]
     number: list[int] = []
-    if rows and biggest > 0.0:
-        width = widths_for_rows(length[0], length[1], filled, float(radii.min()), molecules, planar)
-        found = cell_numbers(length, filled, width, float(radii.max()), molecules, periodic, planar)
-        number = [n for n in found if n > 0]  # along all three axes, or none
-    else:
-        # measured (benchmarks): the pace is flat about this many molecules to a cell
-        share = filled_share(length[0], length[1], filled, float(radii.min()), molecules, planar)
-        occupancy = min(max(2.2 * float(cbrt(0.1 / share)), 1.5), 8.0) if share > 0.0 else 8.0
-        width = cell_widths(length[0], length[1], filled, molecules / occupancy, planar)
-    rows = bool(number)
-    spanning = not exact_radius and not rows
+    # measured (benchmarks): the pace is flat about this many molecules to a cell
+    share = filled_share(length[0], length[1], filled, float(radii.min()), molecules, planar)
+    occupancy = min(max(2.2 * float(cbrt(0.1 / share)), 1.5), 8.0) if share > 0.0 else 8.0
+    width = cell_widths(length[0], length[1], filled, molecules / occupancy, planar)
+    spanning = not exact_radius
     images = False
-    for axis in range(0 if rows else 3):
+    for axis in range(3):
         n = max(1, min(int(length[axis] / width[axis]), MOST_CELLS))
         if planar and axis == 1:
             n = 1
@@ -200,15 +158,11 @@ def choose_grid(
             n = max(1, int(most[axis]))
         number.append(n)
     edges = [np.linspace(0.0, length[axis], number[axis] + 1) for axis in range(3)]
-    wanted, thinnest = 0, 0.0
     if math.isfinite(scale_height) and number[2] > 1:
         thinnest = 0.25 * width[2] if spanning else max(2.002 * biggest, 0.05 * width[2])
-        wanted = number[2]
-        edges[2] = _layers(float(length[2]), wanted, scale_height, thinnest) if layers is None else layers
-        number[2] = len(edges[2]) - 1
-    if rows:
-        grid = _grid_of_rows(edges, radii, periodic, mixed=not exact_radius, open_top=open_top)
-        return grid._replace(wanted=wanted, thinnest=thinnest)
+        edge = np.zeros(number[2] + 1)
+        number[2] = write_layers(float(length[2]), number[2], scale_height, thinnest, edge)
+        edges[2] = edge[: number[2] + 1]
     tables = [
         [_slots(edges[axis], float(r), periodic[axis], spanning, open_top=open_top and axis == 2) for axis in range(3)]
         for r in radii
@@ -223,33 +177,7 @@ def choose_grid(
             first[size, axis, : len(f)] = f
             span[size, axis, : len(s)] = s
     last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
-    return Grid(
-        (number[0], number[1], number[2]), tuple(edges), wanted, thinnest, False, boundary, first, span,
-        (last[0], last[1], last[2]), spanning, images,
-    )  # fmt: skip
-
-
-def _grid_of_rows(
-    edges: list[NDArray[np.float64]], radii: NDArray[np.float64], periodic: tuple[bool, bool, bool], *, mixed: bool,
-    open_top: bool,
-) -> Grid:  # fmt: skip
-    """Return the grid of cells whose rows may hold copies of trajectories."""
-    boundaries = max(2 * len(edge) - 1 + wraps for edge, wraps in zip(edges, periodic, strict=True))
-    boundary = np.full((len(radii), 3, boundaries), np.inf)
-    for size, radius in enumerate(radii):
-        last = [
-            write_slots(edges[axis], radius, periodic[axis], mixed, open_top and axis == 2, boundary[size, axis])
-            for axis in range(3)
-        ]
-    none = np.zeros((len(radii), 3, 1), np.int32)
-    number = (len(edges[0]) - 1, len(edges[1]) - 1, len(edges[2]) - 1)
-    return Grid(number, tuple(edges), 0, 0.0, True, boundary, none, none, (last[0], last[1], last[2]), False, False)
-
-
-def _layers(height: float, number: int, scale_height: float, thinnest: float) -> NDArray[np.float64]:
-    """Return the edges of layers that hold about equal numbers of molecules of an isothermal column [length]."""
-    edge = np.zeros(number + 1)
-    return edge[: write_layers(height, number, scale_height, thinnest, edge) + 1]
+    return Grid((number[0], number[1], number[2]), boundary, first, span, (last[0], last[1], last[2]), spanning, images)
 
 
 def _slots(
@@ -298,35 +226,6 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
         return around
     cell: NDArray[np.int64] = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, n - 1)
     return cell
-
-
-def new_rows(grid: Grid, stride: int) -> NDArray[np.uint32]:
-    """Return the memory of all rows of a grid, each of ``stride`` words, all empty."""
-    rows: NDArray[np.uint32] = aligned_records(math.prod(grid.number) * stride, np.dtype("u4")).view(np.ndarray)
-    return rows
-
-
-def new_cells(grid: Grid, slot: NDArray[np.uint16], row: NDArray[np.uint32], stride: int, copies: Copies) -> Cells:
-    """Return the empty cells of a grid.
-
-    ``slot : (molecule, 3)`` is the memory for the slots of each molecule, ``row`` the memory of the rows,
-    each ``stride`` words long: room for ``stride`` - 1 molecules, or for copies.
-    """
-    return Cells(
-        row=row,
-        stride=stride,
-        boundary=grid.boundary,
-        first=grid.first,
-        span=grid.span,
-        slot=slot,
-        number_x=grid.number[0],
-        number_y=grid.number[1],
-        number_z=grid.number[2],
-        last_slot_x=grid.last_slot[0],
-        last_slot_y=grid.last_slot[1],
-        last_slot_z=grid.last_slot[2],
-        copies=copies,
-    )
 
 
 @kernel

@@ -18,14 +18,30 @@ from atmosbox.engine.core.lift import FollowPressure
 from atmosbox.engine.core.packing import refuse_solid
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError
-from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas, Modes, aligned_records
+from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
+from atmosbox.engine.exact.advance import Book, Passed, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
-from atmosbox.engine.exact.cells import ROW, Grid, choose_grid, new_cells, new_rows
-from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
-from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.row_cells import TALLER, write_even_layers
-from atmosbox.engine.exact.rows import FEWEST, MORE, MOST, copies_of, row_stride
+from atmosbox.engine.exact.cells import ROW, choose_grid
+from atmosbox.engine.exact.exact import specialise
+from atmosbox.engine.exact.layout import (
+    CHOOSE,
+    FOLLOW,
+    LENGTHEN,
+    NUMBER,
+    PLACE,
+    Column,
+    Layout,
+    as_laid_out,
+    choose_cells,
+    new_cells,
+    new_rows,
+    stride_of,
+    write_cells,
+    write_column,
+)
+from atmosbox.engine.exact.row_cells import MARGIN, TALLER, widths_for_rows
+from atmosbox.engine.exact.rows import FEWEST
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
@@ -39,32 +55,19 @@ class Arrays(NamedTuple):
     """What the kernels of a box work on: the arrays of the box itself, not copies of them.
 
     ``gas`` is their first argument, `Gas` or `WellGas`, and ``modes`` selects them; ``ascent`` is the piston that
-    compiled code moves, None without one; ``now`` is the time that the clocks show, ``epoch_length`` the time after
-    which they are set back, and ``clocks`` those of events that belong to no molecule [time]; ``start_energy`` is the
-    energy at the start [energy]. ``grid`` are the cells, chosen for a ceiling at the height ``filled`` [length] and
-    molecules of the radii ``size_radius : (size,)`` [length]; None if molecules attract each other.
+    compiled code moves, None without one; ``book`` holds its times and the energy at the start, and ``layout`` the
+    cells, or the sizes of the lists of neighbours if molecules attract each other.
 
-    A box with liquid has its ``reservoir`` and its ``substance``; ``vapours`` is the number of molecules of water in
-    vapour and liquid together, ``rotations`` the rotational degrees of freedom of all molecules together; ``drops``
-    are those that are spheres. If molecules attract each other, ``full_depth : (kind, kind)`` are the depths of their
-    wells at full strength [energy].
+    A box with liquid has its ``substance``; ``book.moisture`` is the liquid. If molecules attract each other,
+    ``full_depth : (kind, kind)`` are the depths of their wells at full strength [energy].
     """
 
     gas: Any
     modes: Modes
     ascent: Ascent | None
-    now: float
-    epoch_length: float
-    clocks: Array
-    start_energy: float
-    grid: Grid | None
-    filled: float
-    size_radius: Array
-    reservoir: Any = None
+    book: Book
+    layout: Any
     substance: Any = None
-    vapours: int = 0
-    rotations: float = 0.0
-    drops: Any = None
     full_depth: Any = None
 
 
@@ -92,6 +95,9 @@ class ParcelSet(Parcel):
     """Which molecules are in the box: all of them."""
     _first_drop: int = 0
     """The number of the first kind that is a drop, 0 if there is none."""
+    _start_energy: float = 0.0
+    _loops = staticmethod(dry_loop)
+    """Returns the kernels of the loop over events for a set of modes."""
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         if self._collisions:
@@ -108,9 +114,9 @@ class ParcelSet(Parcel):
             stall=1e-9 * self._spread,
         )
         self._epoch_length = math.ldexp(1024.0, math.frexp(self._spread)[1] - 1)
+        self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
         self._cells: Cells
-        self._grid: Grid
-        self._places: int
+        self._layout: Any
         self._lay_out()
         depth, i, j = self._overlap(self._gas())
         if depth > _OVERLAP:
@@ -145,13 +151,8 @@ class ParcelSet(Parcel):
             gas=self._gas(),
             modes=self._modes,
             ascent=next(iter(self._ascent()), None),
-            now=self._now,
-            epoch_length=self._epoch_length,
-            clocks=self._clocks,
-            start_energy=self._start_energy,
-            grid=getattr(self, "_grid", None),
-            filled=float(self._filled),
-            size_radius=self._size_radius,
+            book=self._book(),
+            layout=self._layout,
         )
 
     def snapshot(self) -> Snapshot:
@@ -175,26 +176,23 @@ class ParcelSet(Parcel):
         if until < self.time:
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         while True:
-            stop = min(until, self._next_turn() if not self._ascends else math.inf)
-            local = stop - float(self._walls.epoch[0])
-            if local > self._epoch_length and self._shift(local, watch):
-                continue
-            self._resolve(local, watch)
-            if self._ascends or stop < self._next_turn():
+            turn = float(self._book().turn[0])
+            self._pass_until(min(until, turn), watch)
+            if until < turn:
                 break
             self._turns[0] += 1
             self._drive()
             if watch is not None:
                 watch(self.time)
-            if stop >= until:
+            if until == turn:
                 break
         self._asked = until
 
     # ------------------------------------------------------------------ how events are resolved
 
     def _piston_turned(self) -> None:
-        velocity = self.piston_velocity
-        if self._ascends or not LOWEST * self._filled <= self.ceiling <= HIGHEST * self._filled:
+        velocity, filled = self.piston_velocity, float(self._layout.filled[0])
+        if self._ascends or not LOWEST * filled <= self.ceiling <= HIGHEST * filled:
             self._lay_out()
             return
         lowest = self.ceiling
@@ -212,53 +210,39 @@ class ParcelSet(Parcel):
         self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
         self._lay_out()
 
-    def _resolve(self, local: float, watch: Callable[[float], None] | None) -> None:
-        """Resolve all events up to a local time."""
+    def _pass_until(self, until: float, watch: Callable[[float], None] | None) -> None:
+        """Resolve all events up to a time; make memory where the kernels lack it, and turn a status into a sentence."""
         self._asked = None
         crushed = math.inf
         if self.piston_velocity < 0.0 and not self._ascends:
-            crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
-            if crushed <= self._now:
+            crushed = self.time + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
+            if crushed <= self.time:
                 raise StalledError(why_crushed(self))
-        stop = min(local, crushed)
-        unwatched = 0
-        with np.errstate(over="ignore"):
-            while True:
-                status, done = self._proceed(stop)
-                unwatched += done
-                self._now = max(self._now, min(stop, self._next_time()))
-                if status == Status.ROW_FULL:
-                    self._grow_rows()
-                elif status == Status.EPOCH_OVER:
-                    self._refill_rows(float(self._calendar.time[1]))
-                elif status == Status.OUTGROWN:
-                    self._lay_out()
-                elif status in (Status.STALLED, Status.CROWDED):
-                    self._now = min(self._next_time(), stop)
-                    raise StalledError(why_stalled(self) if status == Status.STALLED else why_crowded(self))
-                elif status == Status.CRUSHED:
-                    position, speed, since = self._walls.piston
-                    self._now = float(since + (position - self._lowest_ceiling) / -speed)
-                    raise StalledError(why_crushed(self))
-                elif status == Status.TURNED:
-                    self._now = float(self._walls.piston[2])
-                    self._piston_turned()
-                elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
-                    self._now = min(self._next_time(), stop)
-                    raise StalledError(why_crushed(self))
-                elif status == Status.DONE:
-                    break
-                if watch is not None and (status == Status.BUSY or unwatched >= _CHUNK):
-                    watch(float(self._walls.epoch[0]) + self._next_time())
-                    unwatched = 0
-        self._now = stop
-        if crushed < local:
+        left, status = _CHUNK, Passed.BUSY
+        while status != Passed.DONE:
+            book = self._book()
+            given = self._gas(), next(iter(self._ascent()), 0), book, self._layout, min(until, crushed), left
+            status, done = self._pass_time(*given)
+            self._now = float(book.now[0])
+            left -= done
+            if status == Passed.FULL:
+                self._make_room()
+            elif status == Passed.STALLED:
+                raise StalledError(why_stalled(self))
+            elif status == Passed.CROWDED:
+                raise StalledError(why_crowded(self))
+            elif status == Passed.CRUSHED:
+                position, speed, since = self._walls.piston
+                self._now = float(since + (position - self._lowest_ceiling) / -speed)
+                raise StalledError(why_crushed(self))
+            elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
+                raise StalledError(why_crushed(self))
+            elif status == Passed.BUSY:
+                left = _CHUNK
+                if watch is not None:
+                    watch(self.time)
+        if crushed < until:
             raise StalledError(why_crushed(self))
-
-    def _proceed(self, until: float) -> tuple[Status, int]:
-        """Resolve a number of events up to a local time; return why the loop stopped, and their number."""
-        status, done = self._advance(self._gas(), *self._ascent(), until, _CHUNK)
-        return Status(status), int(done)
 
     @property
     def _ascends(self) -> bool:
@@ -272,163 +256,134 @@ class ParcelSet(Parcel):
         assert isinstance(self._driver, FollowPressure)
         diameter = float(self._diameter[0])
         energy = self._start_energy, self._gravity_work
-        heights = float(self._filled), float(self._lowest_ceiling)
+        heights = float(self._layout.filled[0]), float(self._lowest_ceiling)
         return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
 
-    def _next_turn(self) -> float:
-        """Return when the driver is called next [time]."""
-        return math.inf if self._driver is None else (int(self._turns[0]) + 1) * self._driver.interval
+    def _book(self) -> Book:
+        """Return the times of the box, the energy at its start and its liquid."""
+        driver = self._driver
+        turn = math.inf if driver is None or self._ascends else (int(self._turns[0]) + 1) * driver.interval
+        numbers = (np.array([each]) for each in (turn, self._start_energy))
+        return Book(np.array([self._now]), np.array([self._epoch_length]), self._clocks, *numbers, self._moisture)
 
     def _gas(self) -> Gas:
         """Return all data of the kernels."""
-        return Gas(
-            self._molecules, self._events, self._kinds, self._cells,
-            self._calendar, self._box, self._walls, self._tallies,
+        made: Gas = as_laid_out(
+            Gas(
+                self._molecules, self._events, self._kinds, self._cells,
+                self._calendar, self._box, self._walls, self._tallies,
+            ),
+            self._layout, self._modes,
         )  # fmt: skip
-
-    def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
-        """Move the epoch on towards the next event; return False if no event will ever come."""
-        if self._now < self._epoch_length:
-            self._resolve(self._epoch_length, watch)
-        ahead = min(self._next_time(), self._next_turn() - float(self._walls.epoch[0]))
-        step = float(whole_epochs(ahead, self._epoch_length))
-        if step > 0.0:
-            set_back(step, self._gas(), self._clocks, self._modes)
-            self._now -= step
-        return step > 0.0
-
-    def _next_time(self) -> float:
-        """Return the local time of the next event."""
-        return float(next_time(self._gas(), self._clocks))
+        return made
 
     @property
     def _clocks(self) -> Array:
         """The times of events that belong to no molecule: here there are none."""
         return np.full(1, math.inf)
 
-    def _grow_rows(self) -> None:
-        """Make the rows of all cells longer."""
-        if self._modes.rows:
-            if not self._enlarge_rows():
-                self._lay_out_closer()
-            else:
-                self._refill_rows(self._now)
-            return
-        old = self._cells
-        stride = 2 * old.stride
-        cells = old.number_x * old.number_y * old.number_z
-        row = new_rows(self._grid, stride)
-        row.reshape(cells, stride)[:, : old.stride] = old.row.reshape(cells, old.stride)
-        self._cells = old._replace(row=row, stride=stride)
+    @property
+    def _moisture(self) -> Any:
+        """The liquid of the box: here there is none."""
+        return 0
 
-    def _refill_rows(self, now: float) -> None:
-        """Write the copies in all rows again at a local time; make the rows longer or lay out other cells if needed."""
-        while self._refill(self._gas(), now):
-            if not self._enlarge_rows():
-                return self._lay_out_closer()
-
-    def _enlarge_rows(self) -> bool:
-        """Make new, empty rows with more places; return whether that is possible."""
-        self._places += MORE
-        if self._places > MOST:
-            return False
-        self._new_cells(row_stride(self._places, self._modes.mixed))
-        return True
-
-    def _new_cells(self, stride: int) -> None:
-        """Make empty rows of ``stride`` words for the chosen cells."""
-        grid, n = self._grid, len(self._fields)
-        slot = np.zeros((0, 3), np.uint16)
-        if n:
-            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
-        row = new_rows(grid, stride)
-        radius = 0.5 * self.diameter.mean() if self.diameter.size else 0.0
-        copies = copies_of(
-            row, self._events.view(np.ndarray), grid.edges, self._periodic, float(radius), self._epoch_length,
-            planar=self._planar,
-        )  # fmt: skip
-        self._cells = new_cells(grid, slot, row, stride, copies)
-
-    def _lay_out_closer(self) -> None:
-        """Lay out other cells because a row has too many molecules: layers that follow the molecules, or else lists."""
-        grid, found = self._grid, 0
-        edge = np.zeros(grid.wanted + 1)
-        if grid.wanted > 1:
-            count = np.bincount(self._cells.slot[self._present, 2] >> 1, minlength=grid.number[2])
-            found = write_even_layers(count, grid.edges[2], grid.wanted, grid.thinnest, edge)
-        self._crowded = found == 0
-        self._enter(self._choose(edge[: found + 1] if found else None))
+    # ------------------------------------------------------------------ memory for the cells
 
     def _lay_out(self) -> None:
         """Choose cells for the box as it is now and predict all events again."""
-        self._enter(self._choose())
+        self._choose()
+        self._settle()
 
-    def _choose(self, layers: Array | None = None) -> Grid:
-        """Choose cells for the box as it is now, with ``layers`` as edges along z if they are given."""
-        n = len(self._fields)
-        moving = self._walls.law[5] == PISTON
-        self._filled = self.ceiling
-        self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
-        top = TALLER * self._filled if moving else self._filled
-        kT = self._mean_kT()
+    def _settle(self) -> None:
+        """Do what is due in the cells."""
+        while not self._settled(self._gas(), self._now, self._layout):
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """Make memory for longer rows; where that does not help, choose other cells, or else rows without copies."""
+        due = self._layout.due[0]
+        if due in (CHOOSE, FOLLOW):
+            self._crowded |= bool(due == FOLLOW)
+            self._choose()
+            return
+        cells, old = math.prod(self._layout.shape[NUMBER : NUMBER + 3].tolist()), self._cells.row
+        row = new_rows(cells * int(stride_of(self._layout, self._modes)) * (2 if due == LENGTHEN else 1))
+        row[: old.size] = old
+        copies = self._cells.copies._replace(value=row.view(np.float32), occupied=row.view(np.int64))
+        self._cells = self._cells._replace(row=row, copies=copies)
+
+    def _choose(self) -> None:
+        """Choose cells for the box as it is now; all molecules are to be entered into them."""
+        n, moving = len(self._fields), bool(self._walls.law[5] == PISTON)
+        kT, bath = self._warmth()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
         contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
-        return choose_grid(
-            np.array([self._sides[0], self._sides[1], top]),
-            self._periodic,
-            self._size_radius,
-            n if contacts else 1,
-            exact_radius=len(self._kinds.table) == 1,
-            planar=self._planar,
-            filled=self._filled,
-            open_top=bool(moving),
-            scale_height=kT / weight if weight > 0.0 and kT > 0.0 else math.inf,
-            rows=contacts and not self._crowded,
-            layers=layers,
-        )
-
-    def _enter(self, grid: Grid) -> None:
-        """Enter all molecules into the cells of a grid, and have their events predicted."""
-        n = len(self._fields)
-        self._grid = grid
+        shape, filled = np.array([FEWEST, 0, 0, 0, 0, 0, 0]), np.array([self.ceiling])
+        self._layout = Layout(shape, np.array([PLACE]), filled, np.zeros((3, 1)), self._size_radius, None)
+        rows = contacts and not self._crowded
+        rows = rows and bool(choose_cells(self.ceiling, n, self._box, moving, self._layout))
+        grid = None
+        if not rows:
+            grid = choose_grid(
+                np.array([*self._sides[:2], self.ceiling * (TALLER if moving else 1.0)]),
+                self._periodic,
+                self._size_radius,
+                n if contacts else 1,
+                exact_radius=len(self._kinds.table) == 1,
+                planar=self._planar,
+                filled=self.ceiling,
+                open_top=moving,
+                scale_height=max(kT, bath) / weight if weight > 0.0 and max(kT, bath) > 0.0 else math.inf,
+            )
+            shape[:] = ROW - 1, *grid.number, *grid.last_slot
         self._modes = Modes(
-            contacts=self._collisions and bool(n) and float(self._diameter.max()) > 0.0,
+            contacts=contacts,
             gravity=self.gravity > 0.0,
             rotation=self._rotates,
             mixed=len(self._kinds.table) > 1,
-            spanning=bool(grid.spanning),
+            spanning=grid is not None and grid.spanning,
             periodic=any(self._periodic),
-            piston=bool(self._walls.law[5] == PISTON),
+            piston=moving,
             phases=not isinstance(self._present, slice),
             pool=bool(self._walls.law[4] == POOL),
             drops=self._first_drop,
-            images=grid.images,
+            images=grid is not None and grid.images,
             ascends=self._ascends,
-            rows=grid.rows,
+            rows=rows,
         )
         self._find_kernels()
-        self._events = aligned_records(n, EVENT)
-        self._places = FEWEST
-        self._new_cells(row_stride(self._places, self._modes.mixed) if grid.rows else ROW)
-        while True:
-            self._calendar = new_calendar(n)
-            if self._place(self._gas(), self._now) != Status.ROW_FULL:
-                return
-            if not grid.rows:
-                self._new_cells(2 * self._cells.stride)
-            elif not self._enlarge_rows():
-                return self._lay_out_closer()
+        self._events, self._calendar = aligned_records(n, EVENT), new_calendar(n)
+        radius = 0.5 * float(self.diameter.mean()) if self.diameter.size else 0.0
+        most = int(shape[NUMBER : NUMBER + 3].max()) if rows else 1
+        self._cells = new_cells(self._events, len(self._size_radius), 0, most, radius, self._epoch_length)
+        if grid is not None:
+            self._cells = self._cells._replace(boundary=grid.boundary, first=grid.first, span=grid.span)
+            return
+        self._layout = self._layout._replace(edge=np.zeros((3, most + 1)), column=self._column(kT, bath, weight))
+        write_cells(self._gas(), self._layout, self._modes)
+        if self._layout.column.wanted:
+            write_column(kT, self._gas(), self._layout, self._modes)
+
+    def _column(self, kT: float, bath: float, weight: float) -> Column:
+        """Return the data from which the layers of a column are chosen: none are wanted without gravity."""
+        n, layers = len(self._fields), int(self._layout.shape[NUMBER + 2])
+        wanted = layers if layers > 1 and weight > 0.0 and max(kT, bath) > 0.0 else 0
+        width = widths_for_rows(
+            self._sides[0], self._sides[1], self.ceiling, float(self._size_radius.min()), n, self._planar
+        )
+        thinnest = max(2.002 * float(self._size_radius.max()) * MARGIN, 0.05 * width[2])
+        return Column(weight, bath, wanted, thinnest, np.zeros(layers, np.int64), np.zeros(layers + 1))
 
     def _find_kernels(self) -> None:
-        self._place, self._advance, self._replan, self._overlap, self._refill = specialise(self._modes)
+        _, _, self._replan, self._overlap, _ = specialise(self._modes)
+        self._pass_time, self._settled = advancing(self._modes, self._loops)
 
-    def _mean_kT(self) -> float:
+    def _warmth(self) -> tuple[float, float]:
+        """Return kT of the molecules and of the warmest wall [energy]; of a fall if no molecule moves."""
+        first = zip(self._walls.law, self._walls.schedule_kT[self._walls.schedule[:-1]], strict=True)
+        baths = [float(kT) for law, kT in first if law == HEAT_BATH]
         if not self.number:
-            return 0.0
+            return 0.0, 0.0
         kinetic, _, potential = self.energy()
-        dimensions = 2.0 if self._planar else 3.0
-        kT = 2.0 * kinetic / (dimensions * self.number)
-        baths = [
-            float(self._walls.schedule_kT[self._walls.schedule[w]]) for w in range(6) if self._walls.law[w] == HEAT_BATH
-        ]
-        return max([kT, *baths]) if kT > 0.0 or baths else potential / self.number
+        kT = 2.0 * kinetic / ((2.0 if self._planar else 3.0) * self.number)
+        return kT if kT > 0.0 or baths else potential / self.number, max(baths, default=0.0)

@@ -28,16 +28,15 @@ than one and a half cells.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from atmosbox.engine.core.jit import POSITIVE, kernel, lowest_bit
 from atmosbox.engine.core.pair import extent
-from atmosbox.engine.core.state import PLACE_OFFSET, Copies, Motion
+from atmosbox.engine.core.state import PLACE_OFFSET, Motion
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
 from atmosbox.engine.exact.screening import BATCH, CLOSING, DISTANCE, PATH, SLACK, SPEEDS, SQUARE
 
 __all__ = [
-    "FEWEST", "LONGEST", "MORE", "MOST", "START", "STOP", "TOP_SPEED", "centre_of", "copies_in_block", "copies_of",
+    "FEWEST", "LONGEST", "MORE", "MOST", "START", "STOP", "TOP_SPEED", "centre_of", "copies_in_block",
     "describe_cells", "enter", "fill", "has_place", "leave", "members_of", "name_at", "name_in", "number_of",
     "number_of_places", "own_place", "path_of", "row_stride", "start_of", "write_copy",
 ]  # fmt: skip
@@ -68,43 +67,6 @@ def row_stride(places, mixed):
     """
     # rounded up to whole lines of 16 words
     return -(-(_HEAD + (8 if mixed else 7) * places) // 16) * 16
-
-
-def copies_of(
-    row: NDArray[np.uint32], events: NDArray[np.void], edges: tuple[NDArray[np.float64], ...],
-    periodic: tuple[bool, bool, bool], radius: float, longest: float, *, planar: bool,
-) -> Copies:  # fmt: skip
-    """Return the `Copies` of a grid of cells, with the description of its cells.
-
-    Parameters
-    ----------
-    row, events
-        The memory of the rows and of the events.
-    edges
-        Edges of the cells along each axis [length].
-    periodic
-        Whether each axis is periodic.
-    radius
-        The usual radius of a molecule [length].
-    longest
-        Greatest length of an epoch [time].
-    planar
-        Whether all centres lie in one plane y = constant.
-    """
-    layers = len(edges[2]) - 1
-    copies = Copies(
-        value=row.view(np.float32),
-        occupied=row.view(np.int64),
-        place=events.view(np.uint8),
-        centre=np.zeros((3, max(len(edge) for edge in edges))),
-        horizon=np.full(layers, math.inf),
-        slack=np.zeros((layers, 3)),
-        epoch=np.array([0.0, math.inf, 0.0, longest]),
-        room=np.zeros(layers),
-        radius=radius,
-    )
-    describe_cells(edges, periodic, planar, copies)
-    return copies
 
 
 @kernel(plain=True)

@@ -1,6 +1,7 @@
 """The parcel of moist air with visible drops, advanced exactly."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,16 +12,11 @@ from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import KIND, MOLECULE, Kinds, aligned_records
 from atmosbox.engine.exact.cells import size_classes
-from atmosbox.engine.exact.exact import Status
-from atmosbox.engine.exact.parcelset import Arrays
-from atmosbox.engine.liquid import drop
 from atmosbox.engine.liquid.drop import DropRecords
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.substance import Drops, Liquid
 
 __all__ = ["DropParcelSet"]
-
-_CHUNK = 200_000
 
 
 class DropParcelSet(MoistParcelSet):
@@ -39,10 +35,6 @@ class DropParcelSet(MoistParcelSet):
     >>> box.condensed > 0, box.number + box.liquid, box.ledger() < 1e-12
     (True, 2, True)
     """
-
-    def _draw(self, speed: float) -> None:
-        """Draw the time at which the next molecule leaves a drop."""
-        self._drop_begin(self._gas(), self._drops, self._reservoir, self._now)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules of the gas into the arrays, after them those of the liquid, and then the drops."""
@@ -131,17 +123,10 @@ class DropParcelSet(MoistParcelSet):
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return np.append(self.present, np.zeros(len(self._drops.record), np.bool_))
 
-    def _proceed(self, until: float) -> tuple[Status, int]:
-        status, done = self._drop_advance(self._gas(), self._drops, self._reservoir, until, _CHUNK)
-        return Status(status), int(done)
-
-    def _find_kernels(self) -> None:
-        super()._find_kernels()
-        self._drop_begin, self._drop_advance = drop.specialise(self._modes)
-
-    def arrays(self) -> Arrays:
-        """Return what the kernels of this box work on: see `ParcelSet.arrays`."""
-        return super().arrays()._replace(drops=self._drops)
+    @property
+    def _moisture(self) -> Any:
+        """The liquid of the box, with its drops."""
+        return super()._moisture._replace(drops=self._drops)
 
     def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Return centres [length], radii [length] and numbers of molecules of the present drops."""

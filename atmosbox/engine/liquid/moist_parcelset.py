@@ -1,22 +1,18 @@
 """The parcel of moist air, advanced exactly: molecules that condense leave the box, and evaporate into it again."""
 
 import math
-from typing import ClassVar, Unpack
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.parcel import Arrangement, Array
-from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.parcelset import Arrays, ParcelSet
-from atmosbox.engine.liquid import moist
-from atmosbox.engine.liquid.moist import MoistAscent
 from atmosbox.engine.liquid.moist_account import MoistAccount
+from atmosbox.engine.liquid.moist_loop import Moisture, moist_loop
 from atmosbox.engine.liquid.substance import Liquid
 
 __all__ = ["MoistParcelSet"]
-
-_CHUNK = 200_000
 
 
 class MoistParcelSet(MoistAccount, ParcelSet):
@@ -50,6 +46,8 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     engine: ClassVar[str] = "exact"
 
+    _loops = staticmethod(moist_loop)
+
     def __init__(self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid, **box: Unpack[Arrangement]) -> None:
         self._liquid = liquid
         super().__init__(position, velocity, **box)
@@ -64,7 +62,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _draw(self, speed: float) -> None:
         """Draw the times of the liquid again, for molecules that may be as fast as ``speed`` [length/time]."""
-        self._moist_begin(self._gas(), self._reservoir, self._now, speed)
+        self._draws(self._gas(), self._book(), speed)
 
     def _reservoir_changes(self) -> None:
         self._draw(float(self._reservoir.bound[0]))
@@ -78,8 +76,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _wake(self, speed: float) -> None:
         """Draw the times of the liquid again if molecules may now become faster than was assumed for them."""
-        if speed > float(self._reservoir.bound[0]):
-            self._draw(speed)
+        self._wakes(self._gas(), self._book(), speed)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules of the gas into the arrays, then those of the liquid, which are not in the box."""
@@ -103,24 +100,23 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def arrays(self) -> Arrays:
         """Return what the kernels of this box work on: see `ParcelSet.arrays`."""
-        found = super().arrays()._replace(reservoir=self._reservoir, substance=self._liquid.substance)
-        return found._replace(vapours=self._vapours, rotations=self._rotations)
+        return super().arrays()._replace(substance=self._liquid.substance)
 
     def memory(self) -> int:
         """Return the memory of molecules, events, cells, calendar and reservoir [bytes]."""
         return super().memory() + self._reservoir_memory()
 
-    def _proceed(self, until: float) -> tuple[Status, int]:
-        ascent = [MoistAscent(dry, self._vapours, self._rotations) for dry in self._ascent()]
-        status, done = self._moist_advance(self._gas(), self._reservoir, *ascent, until, _CHUNK)
-        return Status(status), int(done)
-
     def _find_kernels(self) -> None:
         super()._find_kernels()
-        self._moist_begin, self._moist_advance = moist.specialise(self._modes)
+        _, self._draws, self._wakes = moist_loop(self._modes)
 
     @property
     def _clocks(self) -> Array:
         """The times of the next events of the liquid."""
         clock: Array = self._reservoir.clock
         return clock
+
+    @property
+    def _moisture(self) -> Any:
+        """The liquid of the box."""
+        return Moisture(self._reservoir, self._vapours, self._rotations, 0)

@@ -12,16 +12,19 @@ from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import EVENT, MOLECULE, Modes, aligned_records
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.calendar import new_calendar
-from atmosbox.engine.exact.exact import Status
+from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.exact.parcelset import Arrays, ParcelSet
 from atmosbox.engine.wells.attraction import RandomBath, SquareWell, Wells, new_bath, new_wells
 from atmosbox.engine.wells.vicinity import Vicinity, new_vicinity
+from atmosbox.engine.wells.well_advance import Lists, advancing, as_listed
 from atmosbox.engine.wells.well_events import WellGas, specialise
 
 __all__ = ["AttractingParcelSet"]
 
 _TIGHT = 1.05
 _KINDS = 64
+_FEWEST = 64
+"""Number of words of a list at first."""
 
 
 class AttractingParcelSet(ParcelSet):
@@ -128,7 +131,6 @@ class AttractingParcelSet(ParcelSet):
     def _lay_out(self) -> None:
         """Make the lists of all molecules, and predict all events again."""
         n = len(self._fields)
-        self._filled = self.ceiling
         reach = float(self._wells.distance.max(initial=0.0))
         for axis in range(3):
             if self._periodic[axis] and self._sides[axis] < 2.0 * _TIGHT * reach:
@@ -150,33 +152,34 @@ class AttractingParcelSet(ParcelSet):
         self._events = aligned_records(n, EVENT)
         self._calendar = new_calendar(n)
         vicinity = new_vicinity(self._sides, self._periodic, n, reach, planar=self._planar)
-        self._vicinity: Vicinity = vicinity
-        stride = 64
-        while True:
-            self._vicinity = vicinity._replace(entry=np.zeros(n * stride, np.uint32), stride=stride)
-            if self._place(self._gas(), self._now) != Status.ROW_FULL:
-                return
-            stride *= 2
+        self._vicinity: Vicinity = vicinity._replace(entry=np.zeros(n * _FEWEST, np.uint32))
+        self._layout = Lists(np.array([_FEWEST]), np.array([PLACE]))
+        self._settle()
 
     def _find_kernels(self) -> None:
-        self._place, self._advance, self._replan, self._overlap_at = specialise(self._modes)
+        _, _, self._replan, self._overlap_at = specialise(self._modes)
+        self._pass_time, self._settled = advancing(self._modes)
 
     def _overlap(self, gas: WellGas) -> tuple[float, int, int]:
         depth, i, j = self._overlap_at(gas, self._now)
         return float(depth), int(i), int(j)
 
     def _gas(self) -> WellGas:  # type: ignore[override]
-        return WellGas(
-            self._molecules, self._events, self._kinds, self._calendar, self._box,
-            self._walls, self._tallies, self._wells, self._vicinity, self._bath,
+        made: WellGas = as_listed(
+            WellGas(
+                self._molecules, self._events, self._kinds, self._calendar, self._box,
+                self._walls, self._tallies, self._wells, self._vicinity, self._bath,
+            ),
+            self._layout,
         )  # fmt: skip
+        return made
 
-    def _grow_rows(self) -> None:
-        """Make the lists of all molecules longer."""
-        old, n = self._vicinity, len(self._fields)
-        entry = np.zeros((n, 2 * old.stride), np.uint32)
-        entry[:, : old.stride] = old.entry.reshape(n, old.stride)
-        self._vicinity = old._replace(entry=entry.reshape(-1), stride=2 * old.stride)
+    def _make_room(self) -> None:
+        """Make memory for longer lists."""
+        old = self._vicinity.entry
+        entry = np.zeros(2 * len(self._fields) * int(self._layout.stride[0]), np.uint32)
+        entry[: old.size] = old
+        self._vicinity = self._vicinity._replace(entry=entry)
 
     @property
     def _clocks(self) -> Array:
@@ -229,7 +232,7 @@ class AttractingParcelSet(ParcelSet):
 
     def pairs(self) -> NDArray[np.int64]:
         """Return the pairs that are inside their wells now, (pair, 2), the lower index first."""
-        n, stride = len(self._fields), self._vicinity.stride
+        n, stride = len(self._fields), int(self._layout.stride[0])
         entry = self._vicinity.entry.reshape(n, stride)
         listed = np.arange(1, stride)[None, :] <= entry[:, :1]
         first, place = np.nonzero(listed & (entry[:, 1:] & 1 == 1))

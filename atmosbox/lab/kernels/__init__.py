@@ -1,4 +1,4 @@
-"""The kernels that a page calls: the engine, and what Python does between two calls of the engine.
+"""The kernels that a page calls: the engine, how molecules start, instruments, and pictures.
 
 Nothing here is called from Python; ``tools/wasm.py`` compiles it to WebAssembly. Read `passing` first, then `gauging`,
 `averaging`, `height_profile` and `picture`; `attracting` and `clustering` replace some of them for molecules that

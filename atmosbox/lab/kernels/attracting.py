@@ -1,9 +1,4 @@
-"""Advance molecules that attract each other, in a page, and change them with knobs.
-
-This is for attracting molecules what `passing` is for hard spheres: what `AttractingParcelSet` does between two calls
-of the engine, in the same order and with the same numbers. The only thing to handle here is a list of neighbours that
-is too short.
-"""
+"""Advance molecules that attract each other, in a page, with the engine's own loop, and change them with knobs."""
 
 import functools
 import math
@@ -12,28 +7,24 @@ from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.epoch import next_time
-from atmosbox.engine.exact.exact import Status
-from atmosbox.engine.wells.vicinity import Vicinity
-from atmosbox.engine.wells.well_events import WellGas, specialise
-from atmosbox.lab.kernels.passing import Passed, epochs
+from atmosbox.engine.exact.advance import Passed
+from atmosbox.engine.exact.layout import PLACE
+from atmosbox.engine.wells.well_advance import advancing
+from atmosbox.engine.wells.well_events import specialise
 
 __all__ = ["Lists", "attracting", "energy_of_wells", "warm_bath"]
-
-# The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
-_DONE, _BUSY, _ROW_FULL = Status.DONE.value, Status.BUSY.value, Status.ROW_FULL.value
 
 
 class Lists(NamedTuple):
     """The sizes of the lists of neighbours, and the depth of the wells.
 
-    ``stride : (1,)`` is the present number of words of a list, ``longest`` the number that there is memory for;
+    ``stride : (1,)`` is the present number of words of a list, ``due : (1,)`` what is to be done with the lists;
     ``full_depth : (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over
     the full one; ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
     """
 
     stride: Any
-    longest: int
+    due: Any
     full_depth: Any
     strength: Any
     work: Any
@@ -56,65 +47,18 @@ def warm_bath(bath, kT):
     return 0
 
 
-@kernel
-def _as_listed(gas, lists):
-    """Return the gas with the present length of its lists."""
-    v = gas.vicinity
-    vicinity = Vicinity(
-        v.entry, lists.stride[0], v.anchor, v.width, v.cell, v.next, v.previous, v.first, v.mark, v.found, v.gap,
-        v.reach, v.number_x, v.number_y, v.number_z, v.inverse_x, v.inverse_y, v.inverse_z,
-    )  # fmt: skip
-    return WellGas(
-        gas.molecules, gas.events, gas.kinds, gas.calendar, gas.box, gas.walls, gas.tallies, gas.wells, vicinity,
-        gas.bath,
-    )  # fmt: skip
-
-
-@kernel
-def _longer_lists(gas, lists):
-    """Make all lists twice as long, in the same memory; return whether there is enough memory."""
-    old = lists.stride[0]
-    if 2 * old > lists.longest:
-        return False
-    entry = gas.vicinity.entry
-    # from the last list to the first, so that no list is overwritten before it has been moved
-    for i in range(gas.molecules.size - 1, 0, -1):
-        for q in range(entry[i * old], -1, -1):
-            entry[2 * i * old + q] = entry[i * old + q]
-    lists.stride[0] = 2 * old
-    return True
-
-
 @functools.cache
 def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``pass_time``, ``place`` and ``attract`` of one set of modes."""
-    place_all, advance, replan, _ = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
-
-    @kernel
-    def resolve(gas, ascent, book, lists, stop, most):
-        """Resolve events up to the local time `stop`, at most `most` of them; see `ParcelSet._resolve`."""
-        done = 0
-        while True:
-            status, some = advance(_as_listed(gas, lists), stop, most - done)
-            done += some
-            book.now[0] = max(book.now[0], min(stop, next_time(gas, book.clocks)))
-            if status == _DONE:
-                book.now[0] = stop
-                return Passed.DONE, done
-            if status == _BUSY:
-                return Passed.BUSY, done
-            if status != _ROW_FULL:
-                return Passed.STALLED, done
-            if not _longer_lists(gas, lists):
-                return Passed.FULL, done
+    pass_time, settle = advancing(modes)
+    _, _, replan, _ = specialise(modes)
 
     @kernel
     def place(gas, book, lists):
         """List the neighbours of all molecules at the start; keep the first time of the bath if it is drawn already."""
         state, clock = gas.tallies.random[0], gas.bath.clock[0]
-        placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
-        while not placed and _longer_lists(gas, lists):
-            placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
+        lists.due[0] = PLACE
+        placed = settle(gas, book.now[0], lists)
         if not math.isinf(clock):
             gas.tallies.random[0] = state
             gas.bath.clock[0] = clock
@@ -133,4 +77,4 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
         replan(gas, book.now[0])
         return 0
 
-    return epochs(resolve, modes), place, attract
+    return pass_time, place, attract

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
+from atmosbox.engine.exact.advance import ascent_of
 from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
 from atmosbox.lab.kernels.flowing import ALOFT, ROLLS, WIND, Flow, across, flowing
 from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
 from atmosbox.lab.kernels.in_gas import is_away, number_in_gas
-from atmosbox.lab.kernels.passing import ascent_of
 from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
 __all__ = ["ENERGY", "Gauges", "Reading", "gauging"]

@@ -15,11 +15,11 @@ from atmosbox.lab.kernels.averaging import average, forget
 from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.flowing import adiabat, can_flow
 from atmosbox.lab.kernels.gauging import gauging
+from atmosbox.lab.kernels.gravity import can_set_gravity, gravity_setter
 from atmosbox.lab.kernels.height_profile import end_profile
-from atmosbox.lab.kernels.moist_passing import moist_knobs
+from atmosbox.lab.kernels.moist_knobs import moist_knobs
 from atmosbox.lab.kernels.passing import passing
 from atmosbox.lab.kernels.picture import picture
-from atmosbox.lab.kernels.pulling import can_pull, pulling
 from atmosbox.lab.kernels.starting import can_start, starting
 
 __all__ = ["kernels"]
@@ -77,7 +77,7 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
     found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
-    found |= {"set_gravity": pulling(modes)} if can_pull(modes) and not wells else {}
+    found |= {"set_gravity": gravity_setter(modes)} if can_set_gravity(modes) and not wells else {}
     if wells:
         pass_time, place, attract = attracting(modes)
         begin, sample, end_frame, look = clustering(modes)

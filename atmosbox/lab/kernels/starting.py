@@ -16,11 +16,11 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.layout import write_column
 from atmosbox.engine.exact.rows import LONGEST
+from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.start.clearing import clear
 from atmosbox.engine.start.scatter import SERIES, crowd, scatter
-from atmosbox.lab.kernels.laying_out import write_column
-from atmosbox.lab.kernels.moist_passing import moist_passing
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
 __all__ = [
@@ -36,7 +36,6 @@ _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
     np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & ((1 << 64) - 1)) for use in (RUN, START)
 )
-_scatter, _crowd, _clear = (kernel(getattr(each, "py_func", each)) for each in (scatter, crowd, clear))
 
 
 class Cleared(NamedTuple):
@@ -141,7 +140,7 @@ def _place(start):
     after = state[0]
     state[0] = np.uint64(first * SERIES)
     given = start.spheres, start.bins, start.scale_height, state
-    possible = _scatter(*given) or _crowd(*given)
+    possible = scatter(*given) or crowd(*given)
     state[0] = after
     return possible
 
@@ -289,9 +288,9 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             gas.bath.clock[0] = math.inf  # `place` draws it
             return True
         gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
-        if modes.gravity:
+        if modes.gravity and modes.rows:
             dimensions = 2.0 if begun.planar != 0 else 3.0
-            return write_column(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.layout)
+            return write_column(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.layout, modes)
         return True
 
     if modes.ascends:
@@ -310,7 +309,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             """Do nothing: no piston rises."""
 
     if modes.phases:
-        _, _, wake = moist_passing(modes)
+        _, _, wake = moist_loop(modes)
 
         @kernel
         def begin_liquid(gas, ascent, book, begun):
@@ -334,7 +333,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
                 if not _place(begun):
                     return 1
                 if modes.drops > 0:
-                    _clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, state)
+                    clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, state)
                 _number(begun)
             elif part == VELOCITIES:
                 _move(begun)

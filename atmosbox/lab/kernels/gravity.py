@@ -12,17 +12,17 @@ from typing import Any
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.exact.advance import Passed
 from atmosbox.engine.exact.encounter import kind_of
+from atmosbox.engine.exact.layout import Column, Layout, write_column
 from atmosbox.lab.kernels.gauging import ENERGY
-from atmosbox.lab.kernels.laying_out import Column, Layout, write_column
 from atmosbox.lab.kernels.pairwise import pairwise_sum
-from atmosbox.lab.kernels.passing import Passed
 from atmosbox.lab.kernels.starting import can_start
 
-__all__ = ["can_pull", "pulling"]
+__all__ = ["can_set_gravity", "gravity_setter"]
 
 
-def can_pull(modes: Modes) -> bool:
+def can_set_gravity(modes: Modes) -> bool:
     """Return whether a page can change gravity in boxes of a set of modes: columns of one gas without a piston."""
     return modes.gravity and modes.rows and can_start(modes) and not (modes.piston or modes.mixed or modes.phases)
 
@@ -49,7 +49,7 @@ def _inside(x, side, inverse):
 
 
 @functools.cache
-def pulling(modes: Modes) -> Callable[..., Any]:
+def gravity_setter(modes: Modes) -> Callable[..., Any]:
     """Return the kernel ``set_gravity`` of one set of modes."""
 
     @kernel
@@ -93,9 +93,8 @@ def pulling(modes: Modes) -> Callable[..., Any]:
         c = layout.column
         weight = begun.weight / gas.molecules.size * gravity
         column = Column(weight, kT, c.wanted, c.thinnest, c.count, c.old)
-        gas.cells.copies.place[:] = 0
-        fits = write_column(kT, gas, Layout(layout.shape, layout.filled, layout.edge, layout.radius, column))
-        return Passed.DONE.value if fits else Passed.FULL.value
+        other = Layout(layout.shape, layout.due, layout.filled, layout.edge, layout.radius, column)
+        return Passed.DONE.value if write_column(kT, gas, other, modes) else Passed.FULL.value
 
     made: Callable[..., Any] = set_gravity
     return made

@@ -1,0 +1,189 @@
+"""Advance a box: the loop over events, and what happens between its stops.
+
+The engine's loop stops on the way because an epoch of its clocks is over, the copies in the rows of cells are too old,
+a row is full, or the cells no longer fit the box. Python runs these functions as they are written, and the lab's page
+compiles them. If memory is too small, they return ``FULL``; Python makes more and calls again.
+"""
+
+import functools
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
+from atmosbox.engine.exact.exact import Status, specialise
+from atmosbox.engine.exact.layout import CHOOSE, LENGTHEN, NEW_EPOCH, as_laid_out, settling
+from atmosbox.engine.exact.turning import Ascent
+
+__all__ = ["Book", "Passed", "advancing", "ascent_of", "dry_loop", "passing"]
+
+# The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
+_DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
+_ROW_FULL, _EPOCH_OVER = Status.ROW_FULL.value, Status.EPOCH_OVER.value
+_CRUSHED, _TURNED, _CROWDED = Status.CRUSHED.value, Status.TURNED.value, Status.CROWDED.value
+
+
+class Book(NamedTuple):
+    """The data of a box besides its gas.
+
+    ``now : (1,)`` is the time that its clocks show [time]; ``epoch_length : (1,)`` the time after which they are set
+    back [time]; ``clocks`` those of events that are not events of a molecule [time], see `epoch`; ``turn : (1,)`` the
+    time since the start at which Python sets the velocity of the piston next [time], ``inf`` if it never does;
+    ``energy : (1,)`` the energy at the start [energy]; ``moisture`` the liquid, 0 if there is none.
+    """
+
+    now: Any
+    epoch_length: Any
+    clocks: Any
+    turn: Any
+    energy: Any
+    moisture: Any
+
+
+class Passed(IntEnum):
+    """Why a call of ``pass_time`` has ended.
+
+    ``DONE``: the requested time is reached; ``BUSY``: the largest number of events is reached; ``STALLED``: events pile
+    up without progress; ``FULL``: what is due in the cells needs more memory, or other cells than compiled code knows;
+    ``CRUSHED``: the piston is too low; ``CROWDED``: there is no free place for a molecule that evaporates.
+    """
+
+    DONE = 0
+    BUSY = 1
+    STALLED = 2
+    FULL = 3
+    CRUSHED = 4
+    CROWDED = 5
+
+
+@kernel(plain=True)
+def ascent_of(ascent, book, filled):
+    """Return the ascent with the energy at its start, for cells that were laid out for a ceiling at this height."""
+    a = ascent
+    return Ascent(a.lift, a.turns, filled, a.lowest, book.energy[0], a.gravity_work, a.freedom, a.diameter)
+
+
+@functools.cache
+def dry_loop(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``advance``, ``draw`` and ``wake`` of a box without liquid."""
+    loop = specialise(modes)[1]
+
+    if modes.ascends:
+
+        @kernel(plain=True)
+        def advance(gas, ascent, book, until, most):
+            """Resolve events, and change the velocity of the piston when it is due."""
+            return loop(gas, ascent, until, most)
+
+    else:
+
+        @kernel(plain=True)
+        def advance(gas, ascent, book, until, most):
+            """Resolve events."""
+            return loop(gas, until, most)
+
+    @kernel(plain=True)
+    def wake(gas, book, speed):
+        """Do nothing: there is no liquid."""
+
+    return advance, wake, wake
+
+
+@functools.cache
+def advancing(modes: Modes, loops: Callable[[Modes], tuple[Callable[..., Any], ...]]) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``pass_time`` and ``settle`` of one set of modes; ``loops`` gives the loop over events."""
+    advance, _, wake = loops(modes)
+    settle = settling(modes)
+
+    if modes.ascends:
+
+        @kernel(plain=True)
+        def proceed(gas, ascent, book, layout, until, most):
+            """Resolve events, and change the velocity of the piston when it is due."""
+            here = ascent_of(ascent, book, layout.filled[0])
+            return advance(as_laid_out(gas, layout, modes), here, book, until, most)
+
+    else:
+
+        @kernel(plain=True)
+        def proceed(gas, ascent, book, layout, until, most):
+            """Resolve events."""
+            return advance(as_laid_out(gas, layout, modes), ascent, book, until, most)
+
+    return passing(proceed, settle, wake, modes), settle
+
+
+def passing(
+    proceed: Callable[..., Any], settle: Callable[..., Any], wake: Callable[..., Any], modes: Modes
+) -> Callable[..., Any]:
+    """Return the kernel ``pass_time`` of a box.
+
+    Parameters
+    ----------
+    proceed
+        Resolves events up to a local time.
+    settle
+        Does what is due in the cells.
+    wake
+        Tells the liquid that molecules may now be faster.
+    modes
+        The features of the box.
+    """
+
+    @kernel(plain=True)
+    def resolve(gas, ascent, book, layout, stop, most):
+        """Resolve events up to the local time `stop`, at most `most` of them; return a `Passed` and their number."""
+        done = 0
+        while True:
+            if not settle(gas, book.now[0], layout):
+                return Passed.FULL, done
+            status, some = proceed(gas, ascent, book, layout, stop, most - done)
+            done += some
+            book.now[0] = max(book.now[0], min(stop, next_time(gas, book.clocks)))
+            if status == _DONE:
+                book.now[0] = stop
+                return Passed.DONE, done
+            if status == _BUSY:
+                return Passed.BUSY, done
+            if status == _STALLED:
+                return Passed.STALLED, done
+            if status == _CRUSHED:
+                return Passed.CRUSHED, done
+            if status == _CROWDED:
+                return Passed.CROWDED, done
+            layout.due[0] = CHOOSE
+            if status == _ROW_FULL:
+                layout.due[0] = LENGTHEN
+            elif status == _EPOCH_OVER:
+                layout.due[0] = NEW_EPOCH
+            elif status == _TURNED:
+                book.now[0] = gas.walls.piston[2]
+                wake(gas, book, 2.0 * abs(gas.walls.piston[1]))
+
+    @kernel(plain=True)
+    def pass_time(gas, ascent, book, layout, until, most):
+        """Advance to ``until`` [time since the start], or by ``most`` events; return a `Passed` and the events."""
+        done = 0
+        while True:
+            local = until - gas.walls.epoch[0]
+            shifts = local > book.epoch_length[0]
+            if shifts and book.now[0] >= book.epoch_length[0]:
+                ahead = min(next_time(gas, book.clocks), book.turn[0] - gas.walls.epoch[0])
+                if modes.ascends:
+                    ahead = min(ahead, (ascent.turns[0] + 1) * ascent.lift.interval - gas.walls.epoch[0])
+                step = whole_epochs(ahead, book.epoch_length[0])
+                shifts = step > 0.0
+                if shifts:
+                    set_back(step, gas, book.clocks, modes)
+                    book.now[0] -= step
+                    continue
+            goal = book.epoch_length[0] if shifts else local
+            status, some = resolve(gas, ascent, book, layout, goal, most - done)
+            done += some
+            if status != Passed.DONE or not shifts:
+                return status.value, done
+
+    made: Callable[..., Any] = pass_time
+    return made
