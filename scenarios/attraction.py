@@ -654,7 +654,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "energy",
         "zJ",
     )
-    warming = "Condensation releases heat" if settings.bath == "none" else "At first condensation warms it"
+    warming = "Condensation releases heat" if settings.bath == "none" else "At first condensation warms the gas"
     warm = over_time(
         warming if settings.start == "vapour" else "Temperature",
         {"air_temperature": "molecules"},
@@ -686,7 +686,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         )
         return (profile, pressure, warm) if settings.start == "slab" else (profile, grown, energies, warm)
     pressure = over_time(
-        "Molecules in a drop hardly press",
+        "A drop adds hardly any pressure",
         {"virial_pressure": "molecules"},
         "pressure",
         "bar",
