@@ -212,7 +212,7 @@ def test_a_scene_without_words_gets_a_sheet_from_its_card_and_headlines(own):
 
 def test_words_that_cannot_be_understood_are_refused_with_file_and_entry(own):
     cases = [
-        ("goal = 3", "goal is no text: put it in quotes"),
+        ("goal = 3", "goal is not a text: put it in quotes"),
         ("goal = 'a'\nhurry = 'b'", "hurry is unknown"),
         ("goal = 'a'\n[[notice]]\nasks = 'b'", "notice 1, asks is unknown: correct the name"),
         ("goal = 'a'\n[[notice]]\nask = ' '", "notice 1, ask is empty"),

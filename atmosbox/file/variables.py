@@ -339,7 +339,7 @@ def variable(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> V
     found = known(name, own)
     if found is None:
         fix = f"declare it in the scene, variables = {{'{name}': (dimensions, unit, words)}}"
-        raise KeyError(f"{name} is no variable of atmosbox: {fix}")
+        raise KeyError(f"{name} is not a variable of atmosbox: {fix}")
     return found
 
 
