@@ -186,8 +186,8 @@ def either(option: str, values: Iterable[str]) -> tuple[Option | str, ...]:
 
     Examples
     --------
-    >>> str(SettingError("theme", "pink", "is no theme", *either("theme", ["notes", "slides"])))
-    'theme = pink is no theme: give theme="notes" or theme="slides".'
+    >>> str(SettingError("theme", "pink", "is not a theme", *either("theme", ["notes", "slides"])))
+    'theme = pink is not a theme: give theme="notes" or theme="slides".'
     """
     return tuple(part for value in values for part in (" or ", Option(option, value)))[1:]
 

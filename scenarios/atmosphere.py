@@ -430,7 +430,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             "K",
             "degC",
             tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
-            reason="a finite number of molecules",
+            reason="the number of molecules is finite",
         ),
         *([scale_height] if told else []),
         Headline(

@@ -606,12 +606,12 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
         ("vapor_density", of(lambda vapor_number_density, **_: vapor_number_density), None, 0.0, "",
          scale.mass_density, "kg m-3", "kg m-3", "vapour"),
         ("vapor_pressure", of(lambda normal_pressure, **_: normal_pressure), published, 0.05 * published,
-         "published simulations, a line through all temperatures", pressure, "Pa", "bar", "vapour pressure"),
+         "published simulations are a line through all temperatures", pressure, "Pa", "bar", "vapour pressure"),
         ("gas_law", (gas + difference[0], difference[1]), gas, 6.0 * third * gas,
          "further virial coefficients are left out", pressure, "Pa", "bar", "the same, and by the vapour's density"),
         ("latent_heat", of(latent), None, 0.0, "", energy, "J mol-1", "kJ mol-1", "latent heat L"),
         ("clapeyron_slope", of(slope), 7.1939 * settings.attraction, 0.05 * 7.1939,
-         "published simulations, a line through all temperatures", scale.energy / BOLTZMANN, "K", "K",
+         "published simulations are a line through all temperatures", scale.energy / BOLTZMANN, "K", "K",
          "L/ΔZ, the slope of ln p against 1/T"),
         ("mean_surface_tension", of(lambda surface_tension, **_: surface_tension), None, 0.0, "",
          pressure * scale.length, "N m-1", "mN m-1", "surface tension"),
@@ -654,7 +654,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "energy",
         "zJ",
     )
-    warming = "Condensation releases heat" if settings.bath == "none" else "At first condensation warms it"
+    warming = "Condensation releases heat" if settings.bath == "none" else "At first condensation warms the gas"
     warm = over_time(
         warming if settings.start == "vapour" else "Temperature",
         {"air_temperature": "molecules"},
@@ -686,7 +686,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         )
         return (profile, pressure, warm) if settings.start == "slab" else (profile, grown, energies, warm)
     pressure = over_time(
-        "Molecules in a drop hardly press",
+        "A drop adds hardly any pressure",
         {"virial_pressure": "molecules"},
         "pressure",
         "bar",

@@ -313,7 +313,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headline="diffusion_coefficient",
         ),
         over_time(
-            "Mixing makes entropy",
+            "Mixing increases the entropy",
             {"mixing_entropy": "molecules"},
             "entropy / N\u00a0k\u00a0ln\u00a02",
             theory="theory",
@@ -321,7 +321,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "line",
-            "What was on the left is everywhere",
+            "The left gas spreads to the right",
             tuple(
                 line
                 for name, label in shares.items()

@@ -194,7 +194,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "histogram",
-            "They do not keep their equal speeds",
+            "Equal speeds become unequal",
             (
                 Line("speed", density, "discs", error=f"{density}_se"),
                 Line("speed", f"{density}_theory", "Maxwell, in a plane", "theory"),

@@ -174,7 +174,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 finite_size.rain_scatter(ascent),
                 float(more.rain[-1]) if finite_size.comparable(ascent) else None,
                 0.0,
-                "theory includes that the liquid of so few molecules scatters, and a surplus rains",
+                "the liquid of so few molecules scatters, and what exceeds the limit rains out",
                 "kg kg-1",
                 "g kg-1",
                 "rain per dry air",

@@ -307,7 +307,7 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
         error,
         float(radius[1:][late].mean()),
         float(off[1:][late].mean()),
-        "by chance the drops differ, and theory is that of equal drops",
+        "the drops differ by chance, and theory is for equal drops",
         "m",
         "nm",
         "radius of the drops with salt",

@@ -57,11 +57,11 @@ def test_a_settings_file_that_says_something_else_is_refused(tmp_path):
         ("[setings]\nseed = 1", " has setings outside the table [settings]", "name it settings"),
         ("[plot]\nsize = 1", " has plot outside", "below a line [settings]"),
         ("scene = ''", " has scene without a name", 'such as scene = "lifting-dry"'),
-        ("accuracy = 0.5", " has accuracy that is no text", 'such as accuracy = "0.5K"'),
-        ("[[settings]]", " has settings that is no table", "write a line [settings]"),
-        ("[settings]\n\na = [1]", " has a that is no number", "give one number"),
-        ("[settings]\n'a b' = {c = 1}", " has a b that is no number", "give one number"),
-        ("[settings.a]\nb = 1", " has a that is no number", "give one number"),
+        ("accuracy = 0.5", " has accuracy that is not a text", 'such as accuracy = "0.5K"'),
+        ("[[settings]]", " has settings that is not a table", "write a line [settings]"),
+        ("[settings]\n\na = [1]", " has a that is not a number", "give one number"),
+        ("[settings]\n'a b' = {c = 1}", " has a b that is not a number", "give one number"),
+        ("[settings.a]\nb = 1", " has a that is not a number", "give one number"),
     ]
     for content, problem, fix in cases:
         with pytest.raises(ConfigError) as caught:

@@ -41,7 +41,7 @@ WRONG = {
     "a variable without a declaration": (
         '"air_temperature_theory": np',
         '"light_height": np',
-        "my_scene.py cannot be run (KeyError: light_height is no variable of atmosbox: declare it in the scene",
+        "my_scene.py cannot be run (KeyError: light_height is not a variable of atmosbox: declare it in the scene",
     ),
     "no theory": ('    return {"air_', '    {"air_', "my_scene.py cannot be run (TypeError: theory returns a NoneType"),
     "a missing variable": ("dataset.heat_from_wall", "dataset.heat", "LINE cannot be run (AttributeError"),

@@ -139,7 +139,7 @@ def test_a_skew_t_that_cannot_be_drawn_is_refused_where_it_is_written():
         (lambda: Panel("skewt", "A", CURVES, y_unit="km"), "the y_unit of the panel 'A' is 'km'"),
         (lambda: Panel("skewt", "A", CURVES, x_scale="log"), "the x_scale of the panel 'A' is 'log'"),
         (lambda: Panel("skewt", "A", CURVES, x_invert=True), "the x_invert of the panel 'A'"),
-        (lambda: Panel("skewt", "A", CURVES, marks=["lfc"]), "marks of the panel 'A' is no tuple of str"),
+        (lambda: Panel("skewt", "A", CURVES, marks=["lfc"]), "marks of the panel 'A' is not a tuple of str"),
         (lambda: Panel("profile", "A", CURVES, marks=("lfc",)), "only a panel of the kind 'skewt' shows them"),
         (lambda: from_json('{"format": 1, "panels": [{"kind": "skewt", "title": "A", "marks": "lfc"}]}'), "marks of a"),
     ]

@@ -211,7 +211,7 @@ def test_a_scene_without_words_gets_a_sheet_from_its_card_and_headlines(own):
 
 def test_words_that_cannot_be_understood_are_refused_with_file_and_entry(own):
     cases = [
-        ("goal = 3", "goal is no text: put it in quotes"),
+        ("goal = 3", "goal is not a text: put it in quotes"),
         ("goal = 'a'\nhurry = 'b'", "hurry is unknown"),
         ("goal = 'a'\n[[notice]]\nasks = 'b'", "notice 1, asks is unknown: correct the name"),
         ("goal = 'a'\n[[notice]]\nask = ' '", "notice 1, ask is empty"),
@@ -277,7 +277,7 @@ def test_a_sum_carries_its_error_and_knows_what_it_has_in_common_with_itself():
     assert filled("{{ last(A.s) }} {{ mean(A.s) }} {{ highest(A.s) }} {{ A.n }}", names) == "2 2 9 800"
     assert filled("{{ word(A.x - A.y, 'warmer', 'colder') }} {as it is}", names) == "colder {as it is}"
     assert filled("{{ round(1, 10 ** 9) }}", names) == "1.000000000000"
-    with pytest.raises(ConfigError, match="there is no theory"):
+    with pytest.raises(ConfigError, match="this number has no theory"):
         filled("{{ A.y.theory }}", names)
 
 

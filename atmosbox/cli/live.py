@@ -51,7 +51,7 @@ def live(
     new start. Only this computer reaches it, and the address has a token that is new each time.
     """
     if port is not None and not 1 <= port <= 65_535:
-        raise SettingError("port", port, "is no port from 1 to 65535", Option("port", 8642))
+        raise SettingError("port", port, "is not a port from 1 to 65535", Option("port", 8642))
     asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
     prepared = checked(asked)
 

@@ -25,7 +25,7 @@ _LARGEST_CONFIG = 1_000_000  # bytes
 _WORDS = {
     "scene": ("without a name", 'give the name of one, such as scene = "lifting-dry"'),
     "engine": ("without a name", 'give the name of one, such as engine = "exact"'),
-    "accuracy": ("that is no text", 'give a target or an error in quotes, such as accuracy = "0.5K"'),
+    "accuracy": ("that is not a text", 'give a target or an error in quotes, such as accuracy = "0.5K"'),
 }
 
 
@@ -103,11 +103,11 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
             raise refusal(key, problem, fix)
         words[key] = word and word.strip()
     if not isinstance(settings, dict):
-        raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
+        raise refusal("settings", "that is not a table", "write a line [settings], and below it the settings")
     for key, value in settings.items():
         if not isinstance(value, Value):
             fix = 'give one number, true, false or a text in quotes, such as "25degC"'
-            raise refusal(key, "that is no number, switch or text", fix)
+            raise refusal(key, "that is not a number, switch or text", fix)
     return Asked(words["scene"] or "", settings, words["engine"], accuracy=words["accuracy"])
 
 

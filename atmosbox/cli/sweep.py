@@ -37,8 +37,8 @@ def sweep(
         list[str] | None,
         typer.Option(
             metavar="NAME=A:B:N",
-            help="A setting that varies: N values from A to B, with Nlog at even ratios, or the values X,Y,Z; any "
-            "number of them make a grid.",
+            help="A setting that varies: N values from A to B in equal steps (Nlog: in equal ratios), or the values "
+            "X,Y,Z. Several --vary make a grid.",
         ),
     ] = None,
     members: Annotated[str, typer.Option(metavar="N", help="Number of runs at each point.")] = "1",

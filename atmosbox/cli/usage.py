@@ -99,7 +99,9 @@ class Command(TyperCommand):
             name = nearest(option.lstrip("-"), _settings(words))
             if name is not None:
                 value = shlex.quote(value or next(iter(words[place + 1 : place + 2]), "VALUE"))
-                return f"{option} is no option, but {name} is a setting: give {name}={value}, or --set {name}={value}."
+                return (
+                    f"{option} is not an option, but {name} is a setting: give {name}={value}, or --set {name}={value}."
+                )
         return f"{said}; atmosbox {self.name} --help shows what may be given."
 
 

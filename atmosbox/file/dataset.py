@@ -93,7 +93,7 @@ def _coordinate(name: str, values: npt.ArrayLike, time_unit: str) -> xr.Variable
         return xr.Variable(declared.dims, _array(declared, values), {}, declared.encoding(()))
     declared = VARIABLES[name]
     if declared.dims != (name,):
-        raise KeyError(f"{name!r} is no coordinate")
+        raise KeyError(f"{name!r} is not a coordinate")
     array = _array(declared, values)
     if declared.dtype != "U" and (np.diff(array) <= 0).any():
         raise ValueError(f"the coordinate {name} does not rise from each value to the next")

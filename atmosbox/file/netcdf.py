@@ -144,7 +144,7 @@ def read(path: AnyPath) -> xr.Dataset:
     import netCDF4
     import xarray as xr
 
-    damaged = f"{source} is no netCDF file, or a damaged one: {fix}."
+    damaged = f"{source} is not a netCDF file, or is damaged: {fix}."
     try:
         if has_endless_heap(source):
             raise FileError(damaged)

@@ -187,8 +187,8 @@ collision_count | 1 | time: point sum dtype=i8 | number of collisions between mo
 wall_hit_count | 1 | time: point sum dtype=i8 | number of hits of molecules on walls
 work_by_piston | J | time: point sum ledger | work done on the molecules by the piston
 work_by_gravity | J | time: point sum ledger | energy given to the molecules by changes of gravity
-gravity | m s-2 | time: point | acceleration of gravity, which was changed by hand
-pool_open_share | 1 | time: point | share of the pool that is open, which was changed by hand
+gravity | m s-2 | time: point | acceleration of gravity, if it was changed during the run
+pool_open_share | 1 | time: point | share of the pool that is open, if it was changed during the run
 heat_from_wall | J | time wall: point sum ledger | heat given to the molecules by the wall
 wall_pressure | Pa | time wall: mean | pressure of the air on the wall
 air_temperature_noise | K | time: difference | expected scatter of a thermometer of so few molecules
@@ -200,7 +200,7 @@ attraction_energy | J | time: point ledger | potential energy of all pairs that 
 molecular_energy | J | time: point ledger | kinetic and potential energy of all molecules
 heat_from_bath | J | time: point sum ledger | heat given to the molecules by the thermostat
 work_by_attraction | J | time: point sum ledger | energy given to the molecules by changes of the attraction
-virial_pressure | Pa | time: mean | pressure inside, by the motion and the forces of molecules
+virial_pressure | Pa | time: mean | pressure by the motion of molecules and the forces between them
 normal_pressure | Pa | time: mean | pressure across the surface of the liquid
 surface_tension | N m-1 | time: mean | surface tension of the liquid
 liquid_number_density | m-3 | time: mean | number of molecules in a cubic metre of liquid
@@ -233,7 +233,7 @@ cloud_liquid_water_mixing_ratio | kg kg-1 | time: mean | mass of liquid water pe
 largest_haze_mixing_ratio | kg kg-1 | time: mean | mass of liquid water per mass of dry air, above which it is a cloud
 rain_mixing_ratio | kg kg-1 | time: mean | mass of water that has rained out so far per mass of dry air
 liquid_temperature | K | time: mean | temperature of the liquid water
-drop_area | m2 | time: mean | area of all drops at which molecules hit them
+drop_area | m2 | time: mean | total area at which molecules hit drops
 condensation_rate | s-1 | time: mean | number of molecules that condense per time
 evaporation_rate | s-1 | time: mean | number of molecules that evaporate per time
 vapor_molecule_count | 1 | time: point dtype=i8 | number of molecules of vapour
@@ -269,8 +269,8 @@ cell_pressure | Pa | time distance height: mean | pressure of the air in a cell,
 equation of state
 horizontal_wind | m s-1 | time distance height: mean | wind away from the left wall
 upward_wind | m s-1 | time distance height: mean | upward wind
-wind_speed | m s-1 | time: mean | root mean square of the wind less its thermal noise; negative where noise prevails
-roll_speed | m s-1 | time: mean | root mean square of the amplitudes of all rolls less their noise; negative likewise
+wind_speed | m s-1 | time: mean | root mean square of the wind minus its thermal noise; negative where noise is larger
+roll_speed | m s-1 | time: mean | root mean square of the amplitudes of all rolls minus their noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
 roll_amplitude | m s-1 | time mode: mean | amplitude of the upward wind of rolls
 tracer_share_aloft | 1 | time: point | share of the molecules from the floor that is in the upper half
@@ -280,7 +280,7 @@ layer_temperature_adiabatic | K | height: mean | temperature of the adiabat thro
 # Speeds, bin by bin
 speed_probability_density | s m-1 | speed: mean | share of molecules per unit of speed
 # Two gases that mix
-mixing_amplitude | 1 | time: point | longest wave of the left-right difference of two gases, as a share of its start
+mixing_amplitude | 1 | time: point | longest wave of the left-right difference of two gases, over that at the start
 mixing_entropy | 1 | time: point | entropy of mixing per molecule, over that of gases that are mixed
 left_gas_share_early | 1 | distance: mean | share of the gas from the left, after a tenth of the mixing time
 left_gas_share_middle | 1 | distance: mean | share of the gas from the left, after half the mixing time
@@ -292,7 +292,7 @@ kinetic_energy_heavy | J | time: point ledger | mean kinetic energy of a disc of
 running_energy_light | J | time: point ledger | mean kinetic energy of a light disc since the start
 running_energy_heavy | J | time: point ledger | mean kinetic energy of a heavy disc since the start
 energy_change | 1 | time: point ledger | change of the kinetic energy since the start, as a share of it
-momentum_residual | 1 | time: point | momentum that neither the discs have nor the walls took, as a share
+momentum_residual | 1 | time: point | missing momentum, neither in the discs nor taken by walls, as a share
 momentum | kg m s-1 | time axis: point ledger | total momentum of the discs
 box_length | m | axis: ledger | length of the box
 disc_position | m | time molecule axis: point ledger | position of the middle of the disc
@@ -378,7 +378,7 @@ def variable(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> V
     found = known(name, own)
     if found is None:
         fix = f"declare it in the scene, variables = {{'{name}': (dimensions, unit, words)}}"
-        raise KeyError(f"{name} is no variable of atmosbox: {fix}")
+        raise KeyError(f"{name} is not a variable of atmosbox: {fix}")
     return found
 
 

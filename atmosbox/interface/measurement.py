@@ -225,7 +225,7 @@ def sweep(
         Name of a scene, or the path of your own.
     vary
         The values of each setting that varies: a list, or a text such as ``"0degC:40degC:5"`` for five evenly spaced
-        values, or ``"50:5000:5log"`` for values in even ratios.
+        values, or ``"50:5000:5log"`` for values in equal ratios.
     members
         Number of runs at each point, each with a seed of its own.
     seed

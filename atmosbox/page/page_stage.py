@@ -243,7 +243,7 @@ def stage(
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
         "speed": {
-            "unit": "m s⁻¹",
+            "unit": "m/s",
             "low": 0.0,
             "high": fastest if counted else round_up(fastest),
             "counted": counted,

@@ -47,8 +47,8 @@ class TextMeasure:
     >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
     >>> drawing = Figure()
     >>> _ = FigureCanvasAgg(drawing)
-    >>> TextMeasure(drawing).wrap("lapse rate = 9.8 ± 0.1 K km⁻¹ (of the parcel)", 90.0, 8.0).split("\n")
-    ['lapse rate', '= 9.8 ± 0.1 K km⁻¹ (of the parcel)']
+    >>> TextMeasure(drawing).wrap("lapse rate = 9.8 ± 0.1 K/km (of the parcel)", 90.0, 8.0).split("\n")
+    ['lapse rate', '= 9.8 ± 0.1 K/km (of the parcel)']
     """
 
     def __init__(self, figure: Figure) -> None:

@@ -121,7 +121,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     ... )
     >>> axes = figure(swept).axes[0]
     >>> axes.get_xlabel(), axes.get_ylabel()
-    ('temperature (°C)', 'mean speed (m s⁻¹)')
+    ('temperature (°C)', 'mean speed (m/s)')
     """
     look = find(theme)
     about = stated(dataset, "atmosbox_parameters", dict)["sweep"]

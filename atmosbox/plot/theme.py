@@ -111,7 +111,7 @@ def find(name: str) -> Theme:
     True
     """
     if name not in THEMES:
-        raise SettingError("theme", name, "is no theme", *either("theme", THEMES))
+        raise SettingError("theme", name, "is not a theme", *either("theme", THEMES))
     return THEMES[name]
 
 

@@ -97,6 +97,6 @@ def labelled(label: str, unit: str, power: int = 0) -> str:
     Examples
     --------
     >>> labelled("speed", "m s-1"), labelled("molecules", "1"), labelled("molecules", "1", 6)
-    ('speed (m s⁻¹)', 'molecules', 'molecules (10⁶)')
+    ('speed (m/s)', 'molecules', 'molecules (10⁶)')
     """
     return label if unit == "1" and not power else f"{label} ({spelled(unit, power)})"

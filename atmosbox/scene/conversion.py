@@ -122,14 +122,23 @@ def spelled(unit: str, power: int = 0) -> str:
 
     Examples
     --------
-    >>> spelled("m s-1"), spelled("degC"), spelled("1"), spelled("1", power=-15)
-    ('m s⁻¹', '°C', '', '10⁻¹⁵')
+    >>> spelled("m s-1"), spelled("J kg-1 K-1"), spelled("ns-1"), spelled("degC"), spelled("1"), spelled("1", power=-15)
+    ('m/s', 'J/(kg K)', 'ns⁻¹', '°C', '', '10⁻¹⁵')
     """
-    factors = [word for word in unit.split() if word != "1"]
-    words = [
-        re.sub(r"-?\d+$", lambda digits: digits[0].translate(_RAISED), _PRINTED.get(each, each)) for each in factors
+    factors = [
+        re.sub(r"-?\d+$", lambda digits: digits[0].translate(_RAISED), _PRINTED.get(each, each))
+        for each in unit.split()
+        if each != "1"
     ]
-    return " ".join([power_of_ten(power), *words] if power else words)
+    above = [each for each in factors if "⁻" not in each]
+    below = [each.replace("⁻¹", "").replace("⁻", "") for each in factors if "⁻" in each]
+    if not above or not below:
+        words = " ".join(factors)
+    elif len(below) == 1:
+        words = f"{' '.join(above)}/{below[0]}"
+    else:
+        words = f"{' '.join(above)}/({' '.join(below)})"
+    return f"{power_of_ten(power)} {words}".rstrip() if power else words
 
 
 _UNITS |= {slashed(name): unit for name, unit in _UNITS.items()}

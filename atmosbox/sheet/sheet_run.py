@@ -135,7 +135,13 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
     >>> [(each.letter, each.fact("ascent")) for each in found]
     [('A', 1600.0), ('B', 160.0)]
     """
-    found = [Trial(_LETTERS[0], "as it comes" if not first.settings.changed().keys() - {"seed"} else "as set", first)]
+    found = [
+        Trial(
+            _LETTERS[0],
+            "with the default settings" if not first.settings.changed().keys() - {"seed"} else "with these settings",
+            first,
+        )
+    ]
     for letter, change in zip(_LETTERS[1:], changes, strict=False):
         settings = type(first.settings).from_user({**first.settings.as_dict(), **change.set})
         if settings == first.settings:

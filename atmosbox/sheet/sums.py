@@ -141,7 +141,7 @@ def _part(number: Any, name: str) -> Any:
     if name not in _PARTS:
         raise ConfigError(f"a number has no {shown(name)}: give one of {', '.join(_PARTS)}")
     if name not in ("value", "error") and getattr(number, "theory", None) is None:
-        raise ConfigError(f"there is no theory of a number whose {name} is asked for: leave it out")
+        raise ConfigError(f"this number has no theory: leave its {name} out")
     return _PARTS[name](number)
 
 
@@ -213,7 +213,7 @@ def _value(node: ast.AST, names: Mapping[str, Facts]) -> Any:
                 return _OPERATORS[type(sign)](*sides)
         case ast.UnaryOp(op=sign, operand=operand):
             return _OPERATORS[type(sign)](_value(operand, names))
-    raise ConfigError(f"{ast.unparse(node)} is no run, no function and no sum of numbers: correct it")
+    raise ConfigError(f"{ast.unparse(node)} is neither a run, a function nor a sum of numbers: correct it")
 
 
 def _printed(result: Any) -> str:

@@ -36,7 +36,7 @@ class Change(NamedTuple):
 def _text(found: Any, place: str) -> str:
     """Return a text as one line; refuse it if its sums or marks are not allowed."""
     if not isinstance(found, str):
-        raise ConfigError(f"{place} is no text: put it in quotes")
+        raise ConfigError(f"{place} is not a text: put it in quotes")
     text = " ".join(found.split())
     try:
         sums.check(text)
@@ -48,7 +48,7 @@ def _text(found: Any, place: str) -> str:
 
 _KINDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "text": (lambda found: bool(found.strip()), "is empty: write a text"),
-    "number": (lambda found: type(found) is int and 0 <= found <= 12, "is no whole number from 0 to 12: correct it"),
+    "number": (lambda found: type(found) is int and 0 <= found <= 12, "is not a whole number from 0 to 12: correct it"),
     "switch": (lambda found: isinstance(found, bool), "is neither true nor false: write one of them"),
     "settings": (lambda found: isinstance(found, dict) and bool(found), "names no setting: write {molecules = 200}"),
 }
@@ -90,7 +90,7 @@ def _checked(found: Any, shape: Any, place: str, default: Any = ...) -> Any:
         case [entry]:
             if not isinstance(found, list):
                 again = f"write [[{place.partition(' ')[0]}]] with two brackets, or a list of texts for choices"
-                raise ConfigError(f"{place} is no list: {again}")
+                raise ConfigError(f"{place} is not a list: {again}")
             if place == "change" and len(found) > MOST_CHANGES:
                 raise ConfigError(f"{place} are too many: keep {MOST_CHANGES} of them")
             return [_checked(each, entry, f"{place} {number}") for number, each in enumerate(found, 1)]
@@ -104,7 +104,7 @@ def _checked(found: Any, shape: Any, place: str, default: Any = ...) -> Any:
 def _table(found: Any, entries: dict[str, tuple[Any, Any]], place: str) -> dict[str, Any]:
     """Return a table of the file, checked, with the defaults of what it does not have."""
     if not isinstance(found, dict):
-        raise ConfigError(f"{place} is no table: write [{place}] above its entries")
+        raise ConfigError(f"{place} is not a table: write [{place}] above its entries")
     within = f"{place}, " if place else ""
     for name in sorted(found.keys() - entries.keys()):
         raise ConfigError(f"{within}{shown(name)} is unknown: correct the name, or remove it")

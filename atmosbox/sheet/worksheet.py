@@ -28,9 +28,9 @@ __all__ = ["Worksheet", "worksheet"]
 _COMMAND = "`--"
 """A question that contains this needs commands."""
 _KNOBS = "Begin A again, and turn a knob above its graphs while it plays. Write down first what each graph will do."
-_NOT_HERE = "*Written for the scene as it comes; with these settings its numbers are not available.*"
+_NOT_HERE = "*Written for the default settings: the numbers are not available with these settings.*"
 _WITH_CARE = (
-    "The numbers are of these runs, but the words of the answers are for the scene as it comes: read them with care."
+    "The numbers are of these runs, but the answers were written for the default settings: read them with care."
 )
 
 

@@ -144,7 +144,7 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
     told = text.strip().rpartition("#")[2]
     found = _LINK.fullmatch(told) if len(told) <= _LONGEST else None
     if found is None:
-        _refuse(text, "is no link of a run, or only a part of one")
+        _refuse(text, "is not a link of a run, or only a part of one")
     version = unquote(found["version"])
     if version != __version__:
         raise SettingError(

@@ -110,7 +110,7 @@ def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
         inner = np.geomspace(start, to_si(high, parameter.unit), n)[1:-1].tolist()
         inner = [from_si(value, parameter.unit) for value in inner]
     else:
-        raise SettingError(parameter.name, text, "begins at or below zero, where no ratios are even")
+        raise SettingError(parameter.name, text, "begins at or below zero, and equal ratios need values above zero")
     values = [low, *(float(f"{value:.12g}") for value in inner), high]
     values = [round(value) for value in values] if parameter.kind == "int" else values
     if len(set(values)) < n:

@@ -79,7 +79,7 @@ def mixing_ratio(vapor_pressure: ArrayLike, pressure: ArrayLike) -> FloatArray:
     p = checked_positive(as_floats(pressure), "pressure")
     if not np.all(e < p):
         raise ValueError(
-            "vapor_pressure must be below pressure: there would be no air, water of that temperature boils."
+            "vapor_pressure must be below pressure: otherwise water of that temperature boils, and there is no air."
         )
     ratio: FloatArray = MASS_RATIO * e / (p - e)
     return ratio

@@ -97,7 +97,7 @@ def raining_path(
     spread = float(checked_not_negative(as_floats(scatter), "scatter")) / MASS_RATIO
     steps = np.diff(moments, prepend=0.0)
     if np.any(steps < 0.0):
-        raise ValueError("time must not run backwards.")
+        raise ValueError("times must not decrease.")
     water, s = given, _water.entropy(p0, t0, given, heat)
     rows = np.empty((len(p), 3))
     for k in range(len(p)):

@@ -33,7 +33,7 @@ from tests.engine.boxes import Pulse
 
 S, P, NAN, INF = Specular(), Periodic(), math.nan, math.inf
 SMOOTH, TURNING = (S,) * 6, (P,) * 6
-WAY_OUT = re.compile(r"\b(give|make|choose) |\bmust be (finite and )?above 0$|is no number from 0 to 1$")
+WAY_OUT = re.compile(r"\b(give|make|choose) |\bmust be (finite and )?above 0$|is not a number from 0 to 1$")
 CRYSTAL = 0.70711 * np.array([[0, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0]])
 FACTS = {"mass": 0.62, "diameter": 0.5, "binding_energy": 3.0, "heat_capacity": 9.0, "volatility": 1.0, "rotation": 3.0}
 
@@ -206,7 +206,7 @@ def test_walls_that_no_box_can_have_are_refused_by_their_names():
             new_walls((S,) * number, 1.0)
     for wall, name in enumerate(WALL_NAMES):
         pair = f"{WALL_NAMES[wall // 2 * 2]} and {WALL_NAMES[wall // 2 * 2 + 1]}"
-        laws = [("glass", f"{name} = 'glass' is no law"), (P, f"{pair} must both be periodic")]
+        laws = [("glass", f"{name} = 'glass' is not a law"), (P, f"{pair} must both be periodic")]
         for law, words in [*laws, (Piston(), f"{name} cannot be a piston.*z_high")][: 2 if wall == 5 else 3]:
             with pytest.raises(RefusedError, match=words):
                 new_walls((*SMOOTH[:wall], law, *SMOOTH[wall + 1 :]), 1.0)

@@ -313,7 +313,7 @@ def test_floor_ceiling_and_gravity_are_turned_apart_and_the_wind_is_drawn(lab):
     assert ceiling == pytest.approx([28.15, 28.15, 73.15])
     assert table["gravity"][[29, 30]] == pytest.approx([9.80665, 25.0])
     assert re.search(r"energy off by [\d.]+ × 10⁻¹[⁴-⁹]$", shown.page.locator("#vitals").inner_text())
-    assert re.fullmatch(r"wind: longest arrow \d+ m s⁻¹", shown.page.locator(".wind").inner_text())
+    assert re.fullmatch(r"wind: longest arrow \d+ m/s", shown.page.locator(".wind").inner_text())
 
 
 def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab):

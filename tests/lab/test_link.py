@@ -154,7 +154,7 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
 @pytest.mark.parametrize(
     ("part", "wrong", "sentence"),
     [
-        (WHOLE, "", "is no link of a run, or only a part of one: copy the link again from the page, as a whole"),
+        (WHOLE, "", "is not a link of a run, or only a part of one: copy the link again from the page, as a whole"),
         ("&end", "", "is no link of a run, or only a part"),
         ("&end", "&end&x=1", "is no link of a run"),
         (__version__, "9.8", f"is of atmosbox 9.8, and this is {__version__}, whose numbers may differ: type pip"),

@@ -48,7 +48,12 @@ def test_what_is_no_file_or_a_huge_one_is_refused_before_it_is_read(tmp_path, mo
     if os.name != "nt":
         os.mkfifo(tmp_path / "pipe")
     monkeypatch.setattr(reading.Path, "read_bytes", lambda path: pytest.fail("the file was read"))
-    for name, said in [("huge.csv", "has 100 MB"), ("", "is no file"), ("pipe", "is no file"), ("none", "is no file")]:
+    for name, said in [
+        ("huge.csv", "has 100 MB"),
+        ("", "is not a file"),
+        ("pipe", "is not a file"),
+        ("none", "is not a file"),
+    ]:
         with pytest.raises(FileError, match=said):
             read(tmp_path / name)
 

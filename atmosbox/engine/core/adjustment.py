@@ -72,8 +72,8 @@ class Adjustable(Account):
         Raises
         ------
         RefusedError
-            If the temperature is not finite and above 0, the wall is no heat bath, or there is none at all; or if the
-            molecules would become too fast for the time step of a stepped engine.
+            If the temperature is not finite and above 0, the wall is not a heat bath, or there is none at all; or if
+            the molecules would become too fast for the time step of a stepped engine.
 
         Examples
         --------
@@ -90,7 +90,7 @@ class Adjustable(Account):
         baths = [w for w, law in enumerate(self._walls.law) if law == HEAT_BATH]
         if wall is not None and wall not in baths:
             name = WALL_NAMES[wall] if 0 <= wall < len(WALL_NAMES) else wall
-            raise RefusedError(f"wall {name} is no heat bath: make it a HeatBath")
+            raise RefusedError(f"wall {name} is not a heat bath: make it a HeatBath")
         if not baths:
             raise RefusedError("no wall of this box has a temperature: make one a HeatBath")
         self._bath_changes(kT)

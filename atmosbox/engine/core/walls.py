@@ -125,7 +125,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
                 accommodation = math.nan
             if not 0.0 <= accommodation <= 1.0:
                 raise RefusedError(
-                    f"the accommodation of wall {name} = {shown(wall.accommodation)} is no number from 0 to 1"
+                    f"the accommodation of wall {name} = {shown(wall.accommodation)} is not a number from 0 to 1"
                 )
             corners = as_schedule(wall.kT, f"kT of wall {name}")
         elif isinstance(wall, Piston):
@@ -142,7 +142,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
                     f"{-LARGEST:g} to {LARGEST:g}"
                 )
         else:
-            raise RefusedError(f"wall {name} = {shown(wall)} is no law: give Specular, Periodic, HeatBath or Piston")
+            raise RefusedError(f"wall {name} = {shown(wall)} is not a law: give Specular, Periodic, HeatBath or Piston")
         laws.law.append(law)
         laws.accommodation.append(accommodation)
         laws.corners.append(corners or [(0.0, 1.0)])
@@ -151,7 +151,13 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
         if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
             low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
             raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
-    # the schedules of all walls stand in one array; `start` tells where that of each wall begins
+    # the schedules of all walls stand in one array; `start` tells where that of each wall begins. Here the schedule of
+    # the floor has three corners, and that of each other wall has one:
+    #
+    #   wall    x_low  x_high  y_low  y_high  z_low       z_high
+    #   start     0      1       2      3       4           7     8
+    #   time      0      0       0      0       0  10  20   0
+    #   kT        1      1       1      1       1   2   3   1
     flat = [corner for corners in laws.corners for corner in corners]
     start = np.concatenate([[0], np.cumsum([len(corners) for corners in laws.corners])])
     return Walls(

@@ -250,7 +250,11 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 for t in prange(threads):
                     first, last = share_of(t, threads, number)
                     count_by_cell(columns.cell, grid.place[t], first, last)
-            # sort: each cell gets a list of its molecules
+            # sort: the numbers of all molecules, in the order of their cells; `first` tells where each cell begins
+            #
+            #   cell       0        1      2
+            #   order    5 0 8  |  3 7  |  1 ...
+            #   first    0         3       5
             reserve_places(grid, cells)
             if parallel and k % _SHARED == 0:
                 share_cells(grid.first, cells, workspace.cut)

@@ -67,7 +67,12 @@ _FLOOR, _CEILING = 4, 5
 def _fetch_ahead(gas):
     """Ask the processor for the data of the molecules whose events may come next, before they are needed.
 
-    These are the molecules in the nodes 2 to 7 of the calendar's tree, the two levels below its root.
+    These are the molecules in the nodes 2 to 7 of the calendar's tree. Each node holds the molecule of the earlier
+    event of the two nodes below it, so the next event of all is in node 1::
+
+                  1
+              2       3
+            4   5   6   7
     """
     calendar = gas.calendar
     for node in range(2, 8):

@@ -47,6 +47,10 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
 
     The positions of the members at time t are computed from their own clocks; nothing is written.
     """
+    # the row of a cell: how many members it has, then their numbers, then free places
+    #
+    #   row[start]  row[start + 1]  row[start + 2]  row[start + 3]  ...
+    #       2             17              5              free
     row = gas.cells.row
     start = (cell * gas.cells.stride) & POSITIVE
     soonest = known.after

@@ -147,7 +147,11 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
     t, at, radius = seeker.t, seeker.at, seeker.radius
     x, y, z = at.x - centre[0], at.y - centre[1], at.z - centre[2]
     place = np.float32(x), np.float32(y), np.float32(z + seeker.fall)
-    # first the quick test of all blocks, eight members at once (separate from the exact test, this is faster)
+    # first the quick test of all blocks, eight members at once (separate from the exact test, this is faster). The bits
+    # of one number tell which places of the row are occupied, those of another which members may be hit:
+    #
+    #   bit    ...  15 14 13 12 11 10  9  8 |  7  6  5  4  3  2  1  0
+    #   block                1              |           0
     occupied = copies.occupied[start >> 1] & ~own
     within = np.float32(after)
     named = np.int64(0)

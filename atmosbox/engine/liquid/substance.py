@@ -112,7 +112,7 @@ class Liquid:
         whole(self.keeps, "number of molecules that the liquid keeps", least=0)
         if not 0.0 < number(self.sticking, "sticking") <= 1.0:
             raise RefusedError(
-                f"sticking = {self.sticking} is no fraction above 0 and up to 1: give 1 if all that hit the liquid stay"
+                f"sticking = {self.sticking} is not above 0 and up to 1: give 1 if all that hit the liquid stay"
             )
 
 

@@ -106,7 +106,7 @@ class AttractingParcelSet(ParcelSet):
                 f"species has shape {species.shape}: give one whole number, or one for each of {n} molecules"
             )
         if not np.issubdtype(species.dtype, np.integer) or (species < 0).any():
-            raise RefusedError("species of a molecule is no whole number: give 0, 1, 2, ...")
+            raise RefusedError("species of a molecule is not a whole number: give 0, 1, 2, ...")
         species = np.broadcast_to(species, (n,)).astype(np.int64)
         self._molecules = aligned_records(n, MOLECULE)
         for axis, name in enumerate("xyz"):

@@ -50,7 +50,7 @@ export class Wind {
       const points = arrows.flatMap((arrow) => this.#shape(arrow, LONGEST / Math.max(fastest, least), rim, apart, length[1] / 2));
       mesh.geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
     }
-    this.words.textContent = word("longest_arrow", { speed: `${figure(fastest, 2)} m s⁻¹` });
+    this.words.textContent = word("longest_arrow", { speed: `${figure(fastest, 2)} m/s` });
   }
 
   // The three triangles of an arrow, wider by a rim.

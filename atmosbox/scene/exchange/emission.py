@@ -57,7 +57,7 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
             math.sqrt(float((middle - mean) ** 2 @ share) / left),
             BOLTZMANN * law.BINDING_TEMPERATURE + flux,
             flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
-            "a pool of few molecules is warmer when one leaves",
+            "molecules leave a pool of few molecules mostly while it is warm by chance",
             "J",
             "zJ",
             "energy of leaving molecules",

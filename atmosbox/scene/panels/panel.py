@@ -120,7 +120,7 @@ class Panel:
             self._set_skewt_axes()
         for name in ("x_label", "y_label", "x_unit", "y_unit", "note"):
             if not isinstance(getattr(self, name), str):
-                raise ValueError(f"the {name} of the panel {self.title!r} is no text.")
+                raise ValueError(f"the {name} of the panel {self.title!r} is not a text.")
         for name in ("x_scale", "y_scale"):
             check_choice("panel", name, getattr(self, name), SCALES)
         for name in ("x_invert", "y_invert"):
@@ -131,7 +131,7 @@ class Panel:
         for name, kind in (("lines", Line), ("headlines", str), ("marks", str)):
             values = getattr(self, name)
             if not isinstance(values, tuple) or not all(isinstance(value, kind) for value in values):
-                raise ValueError(f"{name} of the panel {self.title!r} is no tuple of {kind.__name__}.")
+                raise ValueError(f"{name} of the panel {self.title!r} is not a tuple of {kind.__name__}.")
         for name in ("start", "x_limits", "y_limits"):
             if len(getattr(self, name)) not in (0, 2):
                 raise ValueError(f"{name} of the panel {self.title!r} is {getattr(self, name)!r}, and has two numbers.")

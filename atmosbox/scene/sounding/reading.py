@@ -85,7 +85,7 @@ def read(path: str | os.PathLike[str]) -> Sounding:
 def _content(source: Path, file: str) -> bytes:
     """Return the bytes of a file, or raise FileError."""
     if not source.is_file():
-        raise FileError(f"{file} is no file that can be read: check the name and the folder.")
+        raise FileError(f"{file} is not a file that can be read: check the name and the folder.")
     if (size := os.path.getsize(source)) > LARGEST_FILE:
         raise FileError(f"{file} has {size / 1e6:.0f} MB, far more than a sounding: {_FIX}.")
     try:
