@@ -428,7 +428,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             temperature,
             kT * column.scale.temperature,
             "K",
-            "degC",
+            "K",
             tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
             reason="a finite number of molecules",
         ),
@@ -478,7 +478,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "pressure", "hPa", ("scale_height", "mean_surface_pressure"), guides=guides,
         ),
         against_height(
-            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "degC",
+            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "K",
             ("mean_temperature",),
         ),
     )  # fmt: skip
