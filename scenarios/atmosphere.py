@@ -314,7 +314,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
         },
         knobs=(
-            wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
+            # colder discs in strong gravity would be too many in the lowest cells of a page
+            wall_temperature(parcel, scale, settings, low=200.0 if plane else 100.0, high=600.0),
             *gravity(parcel, scale, settings, low=1.0, high=20.0),
         )
         if settings.floor == "heat-bath"
