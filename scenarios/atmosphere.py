@@ -314,7 +314,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
         },
         knobs=(
-            wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
+            # colder discs in strong gravity would be too many in the lowest cells of a page
+            wall_temperature(parcel, scale, settings, low=200.0 if plane else 100.0, high=600.0),
             *gravity(parcel, scale, settings, low=1.0, high=20.0),
         )
         if settings.floor == "heat-bath"
@@ -428,7 +429,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             temperature,
             kT * column.scale.temperature,
             "K",
-            "degC",
+            "K",
             tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
             reason="the number of molecules is finite",
         ),
@@ -478,7 +479,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "pressure", "hPa", ("scale_height", "mean_surface_pressure"), guides=guides,
         ),
         against_height(
-            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "degC",
+            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "K",
             ("mean_temperature",),
         ),
     )  # fmt: skip

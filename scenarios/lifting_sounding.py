@@ -237,7 +237,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "profile",
-            "Past CIN it rises" if rises else "It never rises",
+            "Higher up it rises by itself" if rises else "It never rises by itself",
             (Line("parcel_buoyancy", "parcel_pressure", "parcel"),),
             x_label="buoyancy",
             y_label="pressure",
@@ -249,7 +249,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             areas=True,
         ),
         replace(
-            atmosphere_panel("Its cloud ends at the EL" if convection.el else "The parcel on its way"),
+            atmosphere_panel("The parcel and its cloud" if convection.el else "The parcel on its way"),
             start=(ascent.temperature - 273.15, ascent.pressure / 100.0),
         ),
     )

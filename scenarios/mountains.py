@@ -41,7 +41,7 @@ from atmosbox.scene.panels import over_time
 if TYPE_CHECKING:
     import xarray as xr
 
-title = "Why is the foehn warm and dry?"
+title = "What happens to moist air that crosses mountains?"
 level = "first year"
 minutes = 10
 FRAMES = 96

@@ -17,7 +17,7 @@ from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["lab_data", "lab_text", "save_lab"]
 
-_MOST_BYTES = 234_000
+_MOST_BYTES = 231_000
 """Largest size of the module and the starts of a page, compressed [bytes]: the page then stays below 1.5 MB."""
 
 
@@ -46,14 +46,14 @@ def lab_text(
     return lab_page(*lab_data(starts, module, prepared.scene), theme=theme, language=language)
 
 
-def lab_data(starts: list[Start], module: str, scene: str, *, level: int = 9) -> tuple[str, list[Any], str, str]:
-    """Return the title of a page, and as data for it the starts, their module, and their plans and memories.
+def lab_data(starts: list[Start], module: str, scene: str, *, level: int = 9) -> tuple[Any, list[Any], str, str]:
+    """Return the stage of a page, and as data for it the starts, their module, and their plans and memories.
 
     ``level`` says how much time to spend on compressing them, from 1 to 9.
     """
     stored = gzip.compress(b"".join(each.stored() for each in starts), level, mtime=0)
     packed = [base64.b64encode(each).decode("ascii") for each in (module_bytes(module, scene), stored)]
-    return str(starts[0].plan["told"]["stage"]["title"]), [each.size() for each in starts], packed[0], packed[1]
+    return starts[0].plan["told"]["stage"], [each.size() for each in starts], packed[0], packed[1]
 
 
 def save_lab(

@@ -49,8 +49,6 @@ def plain(values: ArrayLike) -> list[float | None]:
 def running_panels(prepared: Prepared) -> tuple[Panel, ...]:
     """Return the graphs of a scene without what only a whole run knows; an axis of time is linear.
 
-    Where the temperature is set in kelvin, as the knob and the thermometer then show it, graphs show it so, too.
-
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
@@ -59,9 +57,7 @@ def running_panels(prepared: Prepared) -> tuple[Panel, ...]:
     """
     panels = prepared.module.panels
     found = panels(prepared.settings) if callable(panels) else panels
-    kelvin = ("temperature", "K") in {(each.name, each.unit) for each in type(prepared.settings).describe()}
-    shown = (running for panel in found if (running := _running(panel)) is not None)
-    return tuple(_in_kelvin(panel) if kelvin else panel for panel in shown)
+    return tuple(running for panel in found if (running := _running(panel)) is not None)
 
 
 def _running(panel: Panel) -> Panel | None:
@@ -69,14 +65,6 @@ def _running(panel: Panel) -> Panel | None:
     found = without_headlines(panel)
     evenly = found is not None and found.lines and all(line.x == _TIME for line in found.lines)
     return replace(found, x_scale="linear") if found is not None and evenly else found
-
-
-def _in_kelvin(panel: Panel) -> Panel:
-    """Return a panel with temperatures in kelvin, unless it has marks, which are in its own units."""
-    if panel.start or panel.guides or panel.x_limits or panel.y_limits:
-        return panel
-    along, up = ("K" if unit == "degC" else unit for unit in (panel.x_unit, panel.y_unit))
-    return replace(panel, x_unit=along, y_unit=up)
 
 
 def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tuple[Stage, float]:

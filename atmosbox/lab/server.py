@@ -160,7 +160,7 @@ class Server(socketserver.ThreadingTCPServer):
         _, starts, module, stored = self._data(prepared)
         return json.dumps({"starts": starts, "module": module, "stored": stored})
 
-    def _data(self, prepared: Prepared) -> tuple[str, list[Any], str, str]:
+    def _data(self, prepared: Prepared) -> tuple[Any, list[Any], str, str]:
         with _ONE_AT_A_TIME:
             start, module = served_start(prepared, self._written)
         return lab_data([start], module, prepared.scene, level=1)

@@ -6,7 +6,7 @@ import functools
 import html
 import json
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
@@ -90,7 +90,7 @@ def view_page(
 
 
 def lab_page(
-    title: str,
+    stage: Mapping[str, Any],
     starts: Sequence[Any],
     module: str,
     stored: str,
@@ -103,8 +103,8 @@ def lab_page(
 
     Parameters
     ----------
-    title : str
-        Title of the scene.
+    stage : mapping
+        The record of the stage: its ``title``, and the ``card`` of the model, of which the page has all translations.
     starts : sequence
         For each start that the page offers its label, and the number of bytes of its plan and of its memory.
     module, stored : str
@@ -123,7 +123,7 @@ def lab_page(
 
     Examples
     --------
-    >>> "WebAssembly" in lab_page("Air", [["20", 5, 9]], "AA==", "AA==")
+    >>> "WebAssembly" in lab_page({"title": "Air"}, [["20", 5, 9]], "AA==", "AA==")
     True
     """
     engine = "\n".join(_text("web", name) for name in ("lab_machine.js", "lab_worker.js"))
@@ -134,7 +134,7 @@ def lab_page(
         _block("stored", "text/plain", stored),
         _block("worker", "text/plain", _inline(engine)),
     ]
-    return _document("lab", title, theme, language, data, served=served)
+    return _document("lab", stage["title"], theme, language, data, card=stage.get("card", {}).values(), served=served)
 
 
 @functools.cache
@@ -149,7 +149,23 @@ def words(language: str) -> dict[str, Any]:
     return tomllib.loads(_text("language", f"{language}.toml"))
 
 
-def _document(entry: str, title: str, theme: str, language: str, data: Iterable[str], *, served: bool = False) -> str:
+def _said(language: str, card: Iterable[str]) -> dict[str, Any]:
+    """Return the texts of the page in a language, of the cards of all models those of one."""
+    told = dict(words(language))
+    cards = told.pop("card", {})
+    return {**told, "phrase": {**told.get("phrase", {}), **{text: cards[text] for text in card if text in cards}}}
+
+
+def _document(
+    entry: str,
+    title: str,
+    theme: str,
+    language: str,
+    data: Iterable[str],
+    *,
+    card: Collection[str] = (),
+    served: bool = False,
+) -> str:
     """Return the HTML document that contains some data."""
     libraries = ("three", "uplot", "lean-qr") if entry == "lab" else ("three", "uplot")
     scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
@@ -157,7 +173,9 @@ def _document(entry: str, title: str, theme: str, language: str, data: Iterable[
     scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
     first = "en" if language == "auto" else language
     said = words(first)["page"]
-    tables = {name: words(name) for name in (LANGUAGES[1:] if language == "auto" else dict.fromkeys(("en", first)))}
+    tables = {
+        name: _said(name, card) for name in (LANGUAGES[1:] if language == "auto" else dict.fromkeys(("en", first)))
+    }
     parts = {
         "LANG": first,
         "LANGUAGE": language,

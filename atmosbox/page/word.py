@@ -44,7 +44,7 @@ def card_of(text: str) -> dict[str, str]:
     """
     card = {}
     for paragraph in text.strip().split("\n\n"):
-        _, *parts = re.split(rf"\b({'|'.join(_PARTS)})(?:: | (?=are ))", " ".join(paragraph.split()))
+        _, *parts = re.split(rf"\b({'|'.join(_PARTS)})(?:: | (?=are ))", " ".join(paragraph.replace("`", "").split()))
         for name, words in zip(parts[::2], parts[1::2], strict=True):
             said = words.removeprefix("are ").strip()
             card[_PARTS[name]] = said[:1].upper() + said[1:]

@@ -72,7 +72,7 @@ def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
         if strength == 1.0:
             lines.append(Line("inverse_fine", "real", f"real {fluid.name}", "environment"))
     title, label = "Clausius and Clapeyron: ln p against 1/T", "vapour pressure"
-    panels = [Panel("line", title, tuple(lines), "1000 K / T", label, "1", "bar", y_scale="log")]
+    panels = [Panel("line", title, tuple(lines), "1000 K / T", label, "1", "hPa", y_scale="log")]
     if set(_DENSE) <= set(data):
         lines = [
             Line(name, "kelvin", label, error=f"{name}_se")

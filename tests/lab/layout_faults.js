@@ -1,5 +1,5 @@
 // What is wrong with the layout of a page, in sentences: text that is cut off, that lies on other text or that has too
-// little contrast, a page or a part of it that scrolls sideways, a box that is too small.
+// little contrast, a page or a part of it that scrolls sideways, a box or a graph that is too small.
 () => {
   const found = [], texts = [];
   const seen = (node) => node.checkVisibility({ opacityProperty: true, visibilityProperty: true });
@@ -59,6 +59,11 @@
     const [dark, bright] = [light(parts(color)), light(ground)].sort((one, other) => one - other);
     const ratio = (bright + 0.05) / (dark + 0.05), large = size >= 24 || (size >= 18.66 && fontWeight >= 600);
     if (ratio < (large ? 3 : 4.5)) found.push(`contrast ${ratio.toFixed(2)}: ${name(node)}`);
+  }
+
+  for (const graph of document.querySelectorAll(".graph .u-over")) {
+    const { height } = graph.getBoundingClientRect();
+    if (graph.checkVisibility() && height < 110) found.push(`a graph is ${height} high: ${name(graph.closest(".graph"))}`);
   }
 
   const box = document.querySelector(".box").getBoundingClientRect(), bar = document.querySelector("footer").getBoundingClientRect();

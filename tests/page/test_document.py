@@ -40,7 +40,7 @@ def test_the_libraries_are_as_published():
 def test_every_script_stands_after_those_that_it_imports_and_none_is_forgotten():
     scripts = {file.name: file.read_text(encoding="utf-8") for file in PACKAGE.joinpath("web").iterdir()}
     scripts = {name: text for name, text in scripts.items() if name.endswith(".js") and name != "boot.js"}
-    lab = lab_page("Air", [["20", 5, 9]], "AA==", "AA==")
+    lab = lab_page({"title": "Air"}, [["20", 5, 9]], "AA==", "AA==")
     for page, entry in ((view_page([], []), "view.js"), (lab, "lab.js")):
         order = re.findall(r'data-module="([\w.]+)"', page)
         assert order[-1] == entry
@@ -50,7 +50,7 @@ def test_every_script_stands_after_those_that_it_imports_and_none_is_forgotten()
     assert set(MODULES) <= set(scripts)
 
 
-@pytest.mark.parametrize("page", [view_page([], []), lab_page("Air", [["20", 5, 9]], "AA==", "AA==")])
+@pytest.mark.parametrize("page", [view_page([], []), lab_page({"title": "Air"}, [["20", 5, 9]], "AA==", "AA==")])
 def test_a_page_asks_for_nothing_outside_of_itself(page):
     assert re.findall(r'<(?:script|img|link|iframe)[^>]*(?:src|href)="(?!data:)', page) == []
     assert "default-src 'none'" in page

@@ -12,6 +12,7 @@ from atmosbox.cli.option import Language
 from atmosbox.page.control import knob_controls, setting_controls
 from atmosbox.page.document import LANGUAGES, words
 from atmosbox.page.lesson import lesson_of
+from atmosbox.page.word import card_of
 from atmosbox.simulation.preparation import build, prepare
 
 WEB = resources.files("atmosbox.page").joinpath("web")
@@ -84,6 +85,13 @@ def test_every_word_that_the_page_asks_for_is_in_the_table_and_none_is_left_over
 def test_all_that_scenes_say_on_a_page_is_translated(language):
     table = words(language)["phrase"]
     assert said_by_scenes() - set(table) == set()
+
+
+@pytest.mark.parametrize("language", ["de", "es"])
+def test_what_every_scene_models_and_leaves_out_is_translated(language):
+    cards = {name: card_of(scenarios.load(name).__doc__ or "") for name in scenarios.names()}
+    assert all(cards.values())
+    assert {text for card in cards.values() for text in card.values()} == set(words(language)["card"])
 
 
 @pytest.mark.parametrize("language", ["de", "es"])

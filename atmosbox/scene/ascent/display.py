@@ -48,7 +48,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
         replace(atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"), start=start),
         Panel(
             "profile",
-            "A kink at the cloud base" if cloud else "Too dry for a cloud",
+            "In its cloud it cools more slowly" if cloud else "Too dry for a cloud",
             (
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
