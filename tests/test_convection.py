@@ -162,6 +162,12 @@ def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_abo
         assert wind.value > 4.0 * wind.standard_error
 
 
+def test_no_run_stands_for_a_cheaper_one_of_another_size():
+    for target in ("lecture", "2%"):
+        with pytest.raises(AtmosboxError, match=r"make another flow.*: leave it out"):
+            runner.prepare("convection", {}, accuracy=target)
+
+
 @pytest.mark.parametrize(
     ("settings", "engine", "refused"),
     [
