@@ -210,6 +210,8 @@ def test_no_run_stands_for_a_cheaper_one_of_another_size():
         ({"gravity": 0.0}, None, ""),
         ({"floor_temperature": -50.0, "ceiling_temperature": 50.0}, None, ""),
         ({"molecules": 300, "width": 10.0}, None, ""),
+        ({"molecules": 50, "width": 1.0}, None, ""),
+        ({"packing": 0.01}, None, ""),
         ({"molecules": 50, "width": 10.0, "packing": 0.4}, None, "molecules"),
         ({"packing": 0.5}, None, "packing"),
         ({"packing": 0.5, "floor_temperature": 50.0, "ceiling_temperature": 0.0, "start": "mixed"}, None, ""),

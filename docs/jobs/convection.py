@@ -17,8 +17,11 @@ LINEAR = 0.3
 """Share of its largest speed up to which the growth of a roll is measured; it is slower by the square of this share."""
 CERTAIN = 3.29
 """Number of standard errors that a difference exceeds by chance in one of a thousand cases."""
-DISCS = ((2000, 1000.0), (4000, 1000.0), (7300, 1000.0), (7300, 4000.0), (14_000, 1000.0))
-"""Numbers of discs, and durations [s]."""
+DISCS = (
+    *((molecules, 1000.0, seed) for molecules in (2000, 4000, 14_000) for seed in (1, 2)),
+    *((7300, 4000.0, seed) for seed in (1, 2, 5)),
+)
+"""Numbers of discs, durations [s] and seeds."""
 SPHERES = ((25_000, 2000.0), (50_000, 1500.0), (100_000, 1200.0))
 """Numbers of spheres, and the time after which they turn over steadily [s]."""
 STEEPER = 16.36, 50_000
@@ -142,12 +145,11 @@ def onset(found: Findings) -> None:
 
 @job("convection-size")
 def size(found: Findings) -> None:
-    """Turn over boxes with fewer and with more discs, and watch two boxes for four times as long."""
+    """Turn over boxes with fewer and with more discs, and watch some boxes for four times as long."""
     rows = []
-    for molecules, duration in DISCS:
-        for seed in (1, 2):
-            each, _ = measured(molecules=molecules, duration=duration, seed=seed)
-            rows.append([f"{molecules:,}", f"{duration:g}", str(seed), *row(each)[:3]])
+    for molecules, duration, seed in DISCS:
+        each, _ = measured(molecules=molecules, duration=duration, seed=seed)
+        rows.append([f"{molecules:,}", f"{duration:g}", str(seed), *row(each)[:3]])
     found.table(["discs", "duration [s]", "seed", *SHOWN[:3]], rows)
 
 
