@@ -114,7 +114,7 @@ ladder = (
 )
 """Runs worth comparing: more molecules make a higher box, in which air turns over more easily."""
 
-not_measured = "in which theory knows only the weight of the air: fewer molecules make another box, no faster run of it"
+not_measured = "where fewer molecules make another flow, not a less accurate one"
 """Why there is no measured accuracy."""
 
 

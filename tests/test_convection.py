@@ -10,8 +10,10 @@ from scipy.optimize import brentq
 
 from atmosbox import theory
 from atmosbox.errors import AtmosboxError
-from atmosbox.scene.statistics import growth_per_step
+from atmosbox.scene.statistics import growth_per_step, overlapping_average
 from atmosbox.simulation import runner
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+from atmosbox.version import __version__
 
 SPHERES = theory.Gas(3, (math.sqrt(2.0) * math.pi) ** -0.5)  # mean free path 1 at density 1
 DISCS = theory.Gas(2, 1.0)
@@ -137,6 +139,20 @@ def test_rolls_of_sixty_seeds_grow_as_linear_theory_says_within_their_errors():
 
 
 @pytest.mark.nightly
+def test_most_boxes_turn_over_far_below_the_gravity_of_the_onset_and_none_far_above():
+    """Of one processor it takes two minutes."""
+
+    def turns_over(gravity, seed):
+        outcome = ran("dsmc", molecules=16_000, width=0.7, duration=800.0, gravity=gravity, seed=seed)
+        late = outcome.dataset.isel(elapsed_time=slice(80, None))
+        noise = BOLTZMANN * float(late.air_temperature.mean()) / DRY_AIR.molecule_mass / 16_000
+        return float((late.roll_amplitude.values**2).mean(axis=0).max()) > 36.0 * noise
+
+    assert sum(turns_over(10.0, seed) for seed in range(1, 13)) >= 8
+    assert not any(turns_over(21.0, seed) for seed in range(1, 13))
+
+
+@pytest.mark.nightly
 def test_the_errors_of_lapse_rate_and_heat_in_stable_air_are_the_scatter_of_sixty_seeds():
     """Of one processor it takes a minute."""
     runs = [ran(case="stable", molecules=6000, duration=500.0, seed=seed) for seed in range(1, 61)]
@@ -147,19 +163,44 @@ def test_the_errors_of_lapse_rate_and_heat_in_stable_air_are_the_scatter_of_sixt
         assert stats.chi2.ppf(0.0005, 59) < 59 * scatter / stated < stats.chi2.ppf(0.9995, 59), name
 
 
-def test_below_an_inversion_little_of_the_smoke_rises():
-    inversion, open_air = ran(case="inversion", molecules=2000), ran(**TURNS)
-    smoke, mixed = (number(outcome, "share_from_the_floor") for outcome in (inversion, open_air))
-    assert smoke.value + 4.0 * smoke.standard_error < mixed.value
-    assert number(inversion, "mean_core_lapse_rate").value < 0.0
+def turned(settings, turns, frames):
+    """Return a run in which knobs are turned after some frames, and its headlines before and after by name."""
+    link = f"#atmosbox={__version__}&scene=convection&{settings}&seed=1&turns={turns}&frames={frames}&end"
+    prepared = runner.replayed(link)
+    data, first = runner.execute(prepared).dataset, int(turns.partition(":")[0])
+    parts = data.isel(elapsed_time=slice(0, first)), data
+    return data, *({each.name: each for each in prepared.module.headlines(part, prepared.settings)} for part in parts)
 
 
-def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_above():
-    outcome = ran(case="sea-breeze", molecules=2000, duration=400.0)
-    for name in ("onshore_wind", "return_wind"):
-        wind = number(outcome, name)
-        assert wind.value > 10.0
-        assert wind.value > 4.0 * wind.standard_error
+def test_below_an_inversion_smoke_stays_low_until_the_floor_is_warmed():
+    data, before, after = turned(
+        "case=inversion&molecules=4000&gravity=12&width=1.5&duration=800",
+        "120:floor_temperature:270,120:ceiling_temperature:-245",
+        230,
+    )
+    assert before["share_from_the_floor"].value < 0.15
+    assert before["mean_core_lapse_rate"].value < 0.0
+    assert data.tracer_share_aloft.values[210:].min() > 0.35  # half of mixed molecules are in the upper half
+    assert after["share_from_the_floor"].value > before["share_from_the_floor"].value + 0.2
+
+
+def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_above_and_turns_if_the_sides_do():
+    data, before, _ = turned(
+        "case=sea-breeze&molecules=2000&duration=400",
+        "120:floor_temperature:-101,120:ceiling_temperature:127",
+        240,
+    )
+    for wind in (before["onshore_wind"], before["return_wind"]):
+        assert wind.value > max(10.0, 4.0 * wind.standard_error)
+    below = data.horizontal_wind.values[160:, 5:15, :4].mean(axis=(1, 2))
+    offshore = overlapping_average(below)
+    assert offshore.mean > max(10.0, 4.0 * offshore.standard_error)
+
+
+def test_no_run_stands_for_a_cheaper_one_of_another_size():
+    for target in ("lecture", "2%"):
+        with pytest.raises(AtmosboxError, match=r"make another flow.*: leave it out"):
+            runner.prepare("convection", {}, accuracy=target)
 
 
 @pytest.mark.parametrize(
@@ -169,6 +210,8 @@ def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_abo
         ({"gravity": 0.0}, None, ""),
         ({"floor_temperature": -50.0, "ceiling_temperature": 50.0}, None, ""),
         ({"molecules": 300, "width": 10.0}, None, ""),
+        ({"molecules": 50, "width": 1.0}, None, ""),
+        ({"packing": 0.01}, None, ""),
         ({"molecules": 50, "width": 10.0, "packing": 0.4}, None, "molecules"),
         ({"packing": 0.5}, None, "packing"),
         ({"packing": 0.5, "floor_temperature": 50.0, "ceiling_temperature": 0.0, "start": "mixed"}, None, ""),

@@ -181,8 +181,8 @@ kinetic_energy | J | time: point ledger | kinetic energy of the molecules
 rotational_energy | J | time: point ledger | rotational energy of the molecules
 potential_energy | J | time: point ledger | potential energy of the molecules, in gravity and by attraction
 numerical_heat | J | time: point ledger | energy that the scheme of an approximate engine has made by itself
-ledger_residual | 1 | time: point ledger | residual of the energy budget, as a share of the energy that there \
-is or has passed
+ledger_residual | 1 | time: point ledger | residual of the energy budget, as a share of the energy in the box or \
+exchanged
 collision_count | 1 | time: point sum dtype=i8 | number of collisions between molecules
 wall_hit_count | 1 | time: point sum dtype=i8 | number of hits of molecules on walls
 work_by_piston | J | time: point sum ledger | work done on the molecules by the piston

@@ -1,4 +1,4 @@
-"""Air that turns over: its temperature in colours and its wind as arrows, at two instants, above the panels."""
+"""Air that turns over: its temperature in colours and its wind as arrows, at instants above the panels."""
 
 from __future__ import annotations
 
@@ -21,25 +21,35 @@ _COLOURS = "inferno"  # dark is cold, light is warm, in print too
 _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
 _BAR = 0.125  # width of the colour bar with its numbers, in widths of the page
 _SLOWEST = 0.15  # least speed of the longest arrow, in units of the thermal speed of a molecule
-_ARROWS = 16  # greatest number of arrows along a box
+_ARROWS = 8  # greatest number of arrows along a box
 _AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
 _TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the page and in heights of a screen
 
 
 def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
-    """Return the first and the last frame of two pictures, at the start and at the end, by their titles.
+    """Return the first and the last frame of each picture by its title: start, onset and end, or start and end.
+
+    The onset is where the rolls first come to half of their speed in the last quarter of the run. There is none where
+    the wind blows from the first moment on.
 
     Examples
     --------
-    >>> wind = ("elapsed_time", np.r_[np.zeros(15), np.arange(15.0)])
+    >>> wind = ("elapsed_time", np.r_[np.zeros(30), np.arange(30.0)])
     >>> instants(xr.Dataset({"roll_speed": wind}))
-    {'Start: no wind': (0, 2), 'Warm air rises, cold air sinks': (28, 30)}
+    {'Start: no wind': (0, 4), 'Onset: rolls begin': (40, 44), 'Warm air rises': (56, 60)}
     """
-    frames = dataset.sizes["elapsed_time"]
+    speed = dataset["roll_speed"].values
+    frames = len(speed)
     part = max(1, round(_SHARE * frames))
-    windy = bool((dataset["roll_speed"].values[-max(1, frames // 4) :] > 0.0).all())
-    last = "Warm air rises, cold air sinks" if windy else "End: the air stays at rest"
-    return {"Start: no wind": (0, part), last: (frames - part, frames)}
+    late = speed[-max(1, frames // 4) :]
+    found = {"Start: no wind": (0, part)}
+    if not (late > 0.0).all():
+        return found | {"End: still at rest": (frames - part, frames)}
+    means = np.convolve(speed, np.ones(part) / part, "valid")
+    first = int(np.argmax(means >= 0.5 * late.mean()))
+    if 2 * part <= first <= frames - 2 * part:
+        found["Onset: rolls begin"] = first, first + part
+    return found | {"Warm air rises": (frames - part, frames)}
 
 
 def flow_height(dataset: xr.Dataset, look: Theme) -> float:
@@ -48,12 +58,12 @@ def flow_height(dataset: xr.Dataset, look: Theme) -> float:
         return 0.0
     wide, high = (72.0 * size for size in look.wide)
     across, up = (float(np.ptp(dataset[f"{name}_bnds"].values)) for name in ("distance", "height"))
-    each = 0.9 * (1.0 - _BAR) * wide / 2.0 * up / across
+    each = 0.9 * (1.0 - _BAR) * wide / len(instants(dataset)) * up / across
     return min(each, _TALLEST * wide if look.grows else _TALLEST_ON_SCREEN * high) + _AROUND * look.text
 
 
 def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float) -> None:
-    """Draw the two pictures in a row, below a distance from the upper end of the page [pt].
+    """Draw the pictures in a row, below a distance from the upper end of the page [pt].
 
     Parameters
     ----------
@@ -66,10 +76,11 @@ def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float)
     wide, high = (72.0 * float(size) for size in drawing.get_size_inches())
     bounds = [dataset[f"{name}_bnds"].values / 1000.0 for name in ("distance", "height")]
     edges = [np.append(each[:, 0], each[-1, 1]) for each in bounds]
-    each = (1.0 - _BAR) * wide / 2.0
+    told = instants(dataset)
+    each = (1.0 - _BAR) * wide / len(told)
     width = min(0.9 * each, box * float(np.ptp(edges[0]) / np.ptp(edges[1])))
     base = 1.0 - (top + 1.5 * look.text + box) / high
-    pictures = [_means(dataset, *span) for span in instants(dataset).values()]
+    pictures = [_means(dataset, *span) for span in told.values()]
     both = xr.concat(pictures, "picture")
     norm = Normalize(float(both.warm.min()), float(both.warm.max()))
     # arrows of air at rest are short: a share of the speed of molecules is the least length of the longest
@@ -77,8 +88,8 @@ def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float)
     speeds = np.hypot(both.horizontal_wind, both.upward_wind).quantile(0.98, ("height", "distance"))
     fastest = max(_SLOWEST * thermal, float(speeds.max()))
     time = convert(dataset["elapsed_time_bnds"].values, str(dataset["elapsed_time"].attrs.get("units", "s")), "min")
-    for place, ((words, span), picture) in enumerate(zip(instants(dataset).items(), pictures, strict=True)):
-        left = 4.2 * look.text + place * (each - 0.6 * look.text) + 0.5 * (0.9 * each - width)
+    for place, ((words, span), picture) in enumerate(zip(told.items(), pictures, strict=True)):
+        left = 4.2 * look.text + place * (each - 1.2 / len(told) * look.text) + 0.5 * (0.9 * each - width)
         axes = drawing.add_axes((left / wide, base, width / wide, box / high), in_layout=False)
         _draw(axes, edges, picture, norm, fastest, look)
         first, last = time[span[0], 0], time[span[1] - 1, 1]
@@ -86,9 +97,10 @@ def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float)
         axes.set_title(words, loc="left", fontsize=look.title, weight="bold", pad=3.0)
         axes.set_ylabel("" if place else "height (km)")
         axes.tick_params(labelleft=not place)
-        key = f"; longest arrow {fastest:.0f} m/s" if place else ""
-        axes.set_xlabel(f"width (km), {first:.{digits}f} to {last:.{digits}f} min{key}", labelpad=1.0)
-    left = (4.2 * look.text + 2.0 * (each - 0.6 * look.text)) / wide
+        axes.set_xlabel(f"width (km), {first:.{digits}f} to {last:.{digits}f} min", labelpad=1.0)
+    key = f"longest arrow\n{fastest:.0f} m/s"
+    measure.write(key, wide, top + 2.0 * look.text + box, ha="right", va="top", fontsize=look.small)
+    left = (4.2 * look.text + (1.0 - _BAR) * wide - 1.2 * look.text) / wide
     holder = drawing.add_axes((left, base, 0.012, box / high), in_layout=False)
     bar = drawing.colorbar(ScalarMappable(norm, _COLOURS), cax=holder, ticks=MaxNLocator(4))
     holder.set_title(spelled("degC"), fontsize=look.text, pad=3.0)

@@ -4,11 +4,12 @@ import numpy as np
 from jobs.drawing import axes_of, explain, save
 from jobs.registry import Findings, job
 
-from atmosbox import theory
+from atmosbox import scenarios, theory
+from atmosbox.file.provenance import parameters
 from atmosbox.plot import sweep_figure
 from atmosbox.simulation import runner
 from atmosbox.sweep import plan, sweep
-from atmosbox.theory.constants import BOLTZMANN
+from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 WORDS = ["temperature=111.4K,117.6K,123.8K,130K,136.2K,142.4K"]
 SETTINGS = {"start": "slab", "density": 1.0, "duration": "4 ns"}
@@ -47,6 +48,16 @@ DROPS = 6
 """Number of drops for each pace."""
 
 
+def taken_by_both(run: "runner.Outcome") -> float:
+    """Return the heat that drop and vapour take together for each kelvin, while the drop evaporates [J/mol/K]."""
+    data = run.dataset
+    molecules = parameters(data)["settings"]["molecules"]
+    share = data.vapor_molecule_count.values / molecules
+    part = slice(*(int(np.argmax(share >= least)) for least in scenarios.load("attraction").EVAPORATING))
+    slope = np.polyfit(data.air_temperature_theory.values[part], data.heat_from_bath.values[part], 1)[0]
+    return float(slope) * AVOGADRO / molecules
+
+
 @job("heating")
 def heating(found: Findings) -> None:
     """Heat drops at two paces; draw their temperature against the heat supplied, averaged over the drops."""
@@ -65,6 +76,10 @@ def heating(found: Findings) -> None:
             )
             axes.plot(1e21 * heat, kelvin, label=label)
             stated = [{each.name: each for each in run.headlines} for run in runs]
+            if label == PACES[27]:
+                both = [taken_by_both(run) for run in runs]
+                error = float(np.std(both, ddof=1) / np.sqrt(DROPS))
+                found.number("both", f"{np.mean(both):.0f} ± {error:.0f} J/mol/K")
             for name in ("latent_heat", "liquid_heat_capacity", "vapor_heat_capacity"):
                 values = np.array([each[name].value for each in stated])
                 mean, error = float(values.mean()), float(values.std(ddof=1) / np.sqrt(DROPS))

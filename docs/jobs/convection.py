@@ -1,9 +1,9 @@
 """Convection: wind, heat and lapse rate for several gravities and seeds; onset and growth of rolls beside theory."""
 
 import numpy as np
-from jobs.registry import Findings, job, rounded
+from jobs.registry import Findings, job, results, rounded
+from scipy import stats
 
-from atmosbox import theory
 from atmosbox.scene.headline import Headline
 from atmosbox.simulation import runner
 from atmosbox.text.table import measurement
@@ -11,13 +11,18 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 GRAVITIES = (0.0, 5.0, 9.80665, 15.0, 20.0, 25.0, 30.0)
 SEEDS = range(1, 7)
-GROWN = range(1, 11)
-ACROSS = (10.0, 14.0, 16.0, 18.0, 21.0)
-"""Gravities on either side of the onset in the box of `onset` [m/s2]."""
-SOME = range(1, 11)
 STRONG = 6.0
 """How many times as strong as its noise at rest a roll must be, so that the air counts as turned over."""
-SIZES = ((25_000, 2000.0), (50_000, 1500.0), (100_000, 1200.0))
+LINEAR = 0.3
+"""Share of its largest speed up to which the growth of a roll is measured; it is slower by the square of this share."""
+CERTAIN = 3.29
+"""Number of standard errors that a difference exceeds by chance in one of a thousand cases."""
+DISCS = (
+    *((molecules, 1000.0, seed) for molecules in (2000, 4000, 14_000) for seed in (1, 2)),
+    *((7300, 4000.0, seed) for seed in (1, 2, 5)),
+)
+"""Numbers of discs, durations [s] and seeds."""
+SPHERES = ((25_000, 2000.0), (50_000, 1500.0), (100_000, 1200.0))
 """Numbers of spheres, and the time after which they turn over steadily [s]."""
 STEEPER = 16.36, 50_000
 """Gravity of which the adiabat is .6 times as steep as the imposed gradient [m/s2], and the box looked at closely."""
@@ -93,55 +98,59 @@ def seeds(found: Findings) -> None:
     found.table(["seed", *SHOWN], rows)
 
 
-@job("convection-growth")
+@job("convection-growth", quick=True)
 def growth(found: Findings) -> None:
-    """Let rolls grow in an ideal gas, and compare the strongest of each run with linear theory."""
-    ratios, apart = [], []
-    for seed in GROWN:
-        each, _ = measured("dsmc", molecules=100_000, duration=500.0, seed=seed)
-        if "growth_rate" not in each:
-            continue
-        grown = each["growth_rate"]
-        if not grown.agrees:
-            found.failures.append(f"seed {seed}: rolls grow by {grown.value:.3g}, theory says {grown.theory:.3g}")
-        ratios.append(grown.value / (grown.theory or 1.0))
-        apart.append((grown.value - (grown.theory or 0.0)) / grown.standard_error)
-    error = float(np.std(ratios, ddof=1)) / len(ratios) ** 0.5
-    found.number("ratio", measurement(float(np.mean(ratios)), error))
-    found.number("scatter", rounded(float(np.mean(np.square(apart))) ** 0.5))
+    """Compare the growth of the strongest roll of each run with linear theory, as the benchmark has measured it."""
+    grown = [each for each in results("convection")["growth"] if each["rate"] is not None]
+    rate, error, known = (np.array([each[name] for each in grown]) for name in ("rate", "standard_error", "theory"))
+    square = float(np.sum(((rate - known) / error) ** 2))
+    if not stats.chi2.ppf(0.0005, len(grown)) < square < stats.chi2.ppf(0.9995, len(grown)):
+        found.failures.append(f"the sum of {len(grown)} squared differences from theory, in errors, is {square:.4g}")
+    ratio = float(np.mean(rate / known))
+    chance = float(stats.sem(rate / known))
+    if not -(LINEAR**2) - CERTAIN * chance < ratio - 1.0 < CERTAIN * chance:  # grown rolls are slower
+        found.failures.append(f"rolls grow {ratio:.3g} +- {chance:.2g} times as fast as theory says")
+    found.number("seeds", len(grown))
+    found.number("ratio", measurement(ratio, chance))
+    found.number("scatter", f"{(square / len(grown)) ** 0.5:.2f}")
 
 
-@job("convection-onset")
+@job("convection-onset", quick=True)
 def onset(found: Findings) -> None:
     """Count how many boxes of an ideal gas turn over, for gravities on either side of the onset of linear theory."""
+    measured_by = results("convection")
     rows, shares = [], []
-    for gravity in ACROSS:
-        settings = {"molecules": 16_000, "width": 0.7, "duration": 800.0, "gravity": gravity}
-        outcomes = [measured("dsmc", seed=seed, **settings) for seed in SOME]
-        turned, heat = 0, np.array([each["nusselt_number"].value for each, _ in outcomes])
-        for _, outcome in outcomes:
-            late = outcome.dataset.isel(elapsed_time=slice(80, None))
-            noise = BOLTZMANN * float(late.air_temperature.mean()) / DRY_AIR.molecule_mass / 16_000
-            turned += bool((late.roll_amplitude.values**2).mean(axis=0).max() > STRONG**2 * noise)
-        module = runner.prepare("convection", settings, engine="dsmc")
-        box = module.module.Box(module.settings, module.engine)
-        rate = float(np.max(box.growth((box.floor, box.ceiling), box.gravity))) / box.scale.time
-        shares.append(turned)
-        error = float(np.std(heat, ddof=1)) / len(heat) ** 0.5
+    for known in measured_by["theory"]["gravities"]:
+        runs = [each for each in measured_by["onset"] if each["gravity"] == known["gravity"]]
+        turned, heat = sum(each["roll"] > STRONG for each in runs), [each["nusselt_number"] for each in runs]
+        low, high = stats.binomtest(turned, len(runs)).proportion_ci(0.95)
+        shares.append(turned / len(runs))
         rows.append(
             [
-                f"{gravity:.3g}",
-                f"{theory.rayleigh_number(box.rest()):.0f}",
-                f"{rounded(rate)}",
-                f"{turned} of {len(heat)}",
-                measurement(float(heat.mean()), error),
+                f"{known['gravity']:.3g}",
+                f"{known['rayleigh_number']:.0f}",
+                rounded(known["growth_rate"]),
+                f"{turned} of {len(runs)}",
+                f"{100.0 * low:.0f} to {100.0 * high:.0f}",
+                measurement(float(np.mean(heat)), float(stats.sem(heat))),
             ]
         )
-    if not (shares[0] > len(SOME) / 2 and shares[-1] == 0):
+    if not (shares[0] > 0.5 and shares[-2:] == [0.0, 0.0]):
         found.failures.append(f"air turns over where theory says that it rests, or the other way round: {shares}")
-    found.table(
-        ["gravity [m/s²]", "Rayleigh number", "growth by theory [1/s]", "turned over", "heat, over that at rest"], rows
-    )
+    found.number("seeds", len(measured_by["onset"]) // len(rows))
+    found.number("gravity", f"{measured_by['theory']['onset']:.1f}")
+    head = ["gravity [m/s²]", "Rayleigh number", "growth by theory [1/s]", "turned over", "share, 95 % interval [%]"]
+    found.table([*head, "heat, over that at rest"], rows)
+
+
+@job("convection-size")
+def size(found: Findings) -> None:
+    """Turn over boxes with fewer and with more discs, and watch some boxes for four times as long."""
+    rows = []
+    for molecules, duration, seed in DISCS:
+        each, _ = measured(molecules=molecules, duration=duration, seed=seed)
+        rows.append([f"{molecules:,}", f"{duration:g}", str(seed), *row(each)[:3]])
+    found.table(["discs", "duration [s]", "seed", *SHOWN[:3]], rows)
 
 
 @job("convection-adiabat")
@@ -151,7 +160,7 @@ def adiabat(found: Findings) -> None:
     for gravity in (9.80665, STEEPER[0]):
         dry = gravity / (2.5 * BOLTZMANN / DRY_AIR.molecule_mass)
         steep = []
-        for molecules, duration in SIZES:
+        for molecules, duration in SPHERES:
             settings = {"molecules": molecules, "width": 1.0, "gravity": gravity, "duration": duration}
             each, outcome = measured("dsmc", **settings)
             core, rest = each["mean_core_lapse_rate"], conducted(outcome) / 1000.0

@@ -5,6 +5,7 @@ called by its own name: the job ``energy`` makes the table ``energy`` and number
 """
 
 import io
+import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -17,6 +18,7 @@ from atmosbox.text.table import measurement
 DOCS = Path(__file__).resolve().parents[1]
 ROOT = DOCS.parent
 FIGURES = DOCS / "figures"
+BENCHMARKS = ROOT / "benchmarks"
 SCENES = tuple(name for name in scenarios.names() if (DOCS / "scenes" / f"{name}.md").is_file())
 """The scenes that have a page; a variant is told on the page of the scene that it varies."""
 LARGEST_FIGURE = 300_000
@@ -53,6 +55,11 @@ def markdown(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Return a table as Markdown."""
     lines = [list(header), ["---"] * len(header), *([str(cell) for cell in row] for row in rows)]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+
+
+def results(name: str) -> Any:
+    """Return what a benchmark has written."""
+    return json.loads((BENCHMARKS / f"{name}.json").read_text(encoding="utf-8"))["results"]
 
 
 def rounded(value: float, figures: int = 2) -> str:

@@ -2,17 +2,10 @@
 
 import datetime
 import json
-from typing import Any
 
-from jobs.registry import ROOT, SCENES, Findings, job
+from jobs.registry import BENCHMARKS, SCENES, Findings, job, results
 
-FOLDER = ROOT / "benchmarks"
 CASES = {"periodic": "periodic box", "gravity": "gravity between heat baths"}
-
-
-def results(name: str) -> Any:
-    """Return what a benchmark has written."""
-    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))["results"]
 
 
 @job("speed", quick=True)
@@ -27,7 +20,7 @@ def speed(found: Findings) -> None:
     found.table(["gas", *(f"{n:,} molecules" for n in numbers)], [[gas, *cells] for gas, cells in pace.items()])
     held = [r["bytes_per_molecule"] for r in measured]
     found.number("bytes", f"{min(held):.0f} to {max(held):.0f}")
-    on = json.loads((FOLDER / "engine.json").read_text(encoding="utf-8"))["measured_on"]
+    on = json.loads((BENCHMARKS / "engine.json").read_text(encoding="utf-8"))["measured_on"]
     date = datetime.date.fromisoformat(on["date"])
     found.number("machine", f"{date.day} {date:%B %Y}, {on['processor']}, Python {on['python']}, numba {on['numba']}")
 

@@ -4,7 +4,7 @@ import math
 import warnings
 
 import numpy as np
-from jobs.registry import ROOT, Findings, job, rounded
+from jobs.registry import BENCHMARKS, Findings, job, rounded
 
 from atmosbox import theory
 from atmosbox.engine import Periodic, maxwell_velocities, random_positions
@@ -13,13 +13,12 @@ from atmosbox.plot import tradeoff_figure
 from atmosbox.scene import engines
 from atmosbox.simulation import accuracy
 
-FOLDER = ROOT / "benchmarks"
 SCENES = ("lifting-dry", "atmosphere", "temperature-large")
 
 
 def measured(scene: str):
     """Return what ``atmosbox tradeoff`` has written for a scene, without engines that atmosbox no longer has."""
-    data = read(FOLDER / f"tradeoff-{scene}.nc")
+    data = read(BENCHMARKS / f"tradeoff-{scene}.nc")
     return data.isel(rung=[str(each).partition(":")[0] in engines.names() for each in data.engine.values])
 
 

@@ -536,7 +536,7 @@ TASKS = {
     "diffusion": ({"molecules": 1000}, {"presets": "Hot gases"}, 60),
     "atmosphere": ({"molecules": 1500}, {"temperature": 410}, 120),
     "lifting-dry": ({"molecules": 400}, {"altitude": 4.6}, 40),
-    "convection": ({}, {"floor_temperature": -245, "ceiling_temperature": 270}, 110),
+    "convection": ({}, {"gravity": 36}, 110),
     "evaporation": ({}, {"temperature": 36}, 250),
     "condensation": ({}, {"temperature": 9.7}, 200),
     "nuclei": ({}, {"presets": "Water without surface tension"}, 20),
