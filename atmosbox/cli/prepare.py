@@ -77,16 +77,14 @@ def _engines(scene: str, every: bool) -> list[str]:
 def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
     """Compile on all cores; yield each scene and engine with the time [s], None if the scene cannot use the engine."""
     import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from concurrent.futures import ProcessPoolExecutor
 
     from atmosbox.sweep.conduct import cores
 
     # separate processes, since the compiler holds the lock of the Python interpreter (GIL)
     with ProcessPoolExecutor(min(cores(), len(asked)), multiprocessing.get_context("spawn")) as pool:
-        running = {pool.submit(_compile, *each): each for each in asked}
         try:
-            for finished in as_completed(running):
-                yield running[finished], finished.result()
+            yield from zip(asked, pool.map(_compile, *zip(*asked, strict=True)), strict=True)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise

@@ -84,27 +84,24 @@ def run(
     from atmosbox.file.output_path import run_is_there, unused, whole_path
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time
+    from atmosbox.simulation.restart import read_state
 
     restart = None
     given: dict[str, object] = {"--set": values, "--config": config, "--from": source, "--seed": seed}
     given |= {"--engine": engine, "--accuracy": accuracy}
-    if resume is None and replay is None:
-        prepared = checked(gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy))
-        default = for_scene(prepared.scene)
-    elif resume is None:
-        runner.check_nothing_changes("a run that is replayed", given)
-        with prints_to_stderr():
-            prepared = runner.replayed(str(replay), scene, save_molecules=save_molecules)
-        default = for_scene(prepared.scene)
-    else:
+    if resume is not None:
         given |= {"--replay": replay, "--save-molecules": save_molecules}
         runner.check_nothing_changes("a run that goes on", given)
-        from atmosbox.simulation.restart import read_state
-
         restart = read_state(resume)
         with prints_to_stderr():
             prepared = runner.prepared_again(restart, scene)
-        default = whole_path(resume)
+    elif replay is not None:
+        runner.check_nothing_changes("a run that is replayed", given)
+        with prints_to_stderr():
+            prepared = runner.replayed(replay, scene, save_molecules=save_molecules)
+    else:
+        prepared = checked(gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy))
+    default = for_scene(prepared.scene) if resume is None else whole_path(resume)
     path = netcdf_name(default if out is None else Path(out))
     numbered = out is None and resume is None and not force
     if dry_run:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -47,6 +45,7 @@ def tradeoff(
     Each engine and setting runs many times, with other seeds, while the budget lasts; the engines are compiled before.
     Ctrl-C ends it early and keeps what was measured. After a kill type the same command again: it goes on where it was.
     """
+    from atmosbox.file.export import as_csv
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
     from atmosbox.plot.tradeoff_figure import recommended
@@ -75,12 +74,14 @@ def tradeoff(
             force=force,
             note=None if quiet else lambda text: tell(f"note: {text}"),
         )
-    write_whole(files[1], as_csv(found).encode())
+    records = rows(found)
+    cells = [["" if cell != cell else cell for cell in record.values()] for record in records]  # NaN is left out
+    write_whole(files[1], as_csv([list(records[0]), *cells]))
     save(found, files[2], force=force)
     if as_json:
         best = recommended(found)
         way = None if best is None else str(found.rung.values[best[0]])
-        say_json({"scene": scene, "files": [str(file) for file in files], "recommended": way, "rungs": rows(found)})
+        say_json({"scene": scene, "files": [str(file) for file in files], "recommended": way, "rungs": records})
     elif quiet:
         say(str(path))
     else:
@@ -104,17 +105,6 @@ def rows(found: xr.Dataset) -> list[dict[str, object]]:
         record["left_out"] = str(found.left_out.values[k])
         made.append(record)
     return made
-
-
-def as_csv(found: xr.Dataset) -> str:
-    """Return the measurement as a table of comma-separated values."""
-    records = rows(found)
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, list(records[0]), lineterminator="\n")
-    writer.writeheader()
-    for record in records:
-        writer.writerow({name: "" if value != value else value for name, value in record.items()})  # NaN is left out
-    return stream.getvalue()
 
 
 def lines(found: xr.Dataset, columns: int) -> list[str]:

@@ -79,12 +79,6 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
     return array.astype(declared.dtype)
 
 
-def _measured(frames: Mapping[str, npt.ArrayLike], own: Mapping[str, Variable]) -> dict[str, xr.Variable]:
-    """Return the variables that hold these arrays."""
-    declared = {name: variable(name, own) for name in frames}
-    return {name: declared[name].holding(_array(declared[name], values)) for name, values in frames.items()}
-
-
 def _coordinate(name: str, values: npt.ArrayLike, time_unit: str) -> xr.Variable:
     """Return a coordinate or its bounds."""
     if name.endswith("_bnds"):
@@ -151,16 +145,13 @@ def dataset(
     """
     if time_unit not in ("s", "ns", "ps"):
         raise ValueError(f"elapsed_time cannot be in {time_unit!r}, only in s, ns or ps")
-    held = _measured(frames, own)
-    sizes = {dim: size for entry in held.values() for dim, size in entry.sizes.items()}
-    given = {dim: names for dim, names in _LABELS.items() if sizes.get(dim) == len(names)} | dict(coords)
-    axes = {name: _coordinate(name, values, time_unit) for name, values in given.items()}
+    axes = {name: _coordinate(name, values, time_unit) for name, values in coords.items()}
     for name in axes:
         if f"{name}_bnds" in axes:
             axes[name].attrs["bounds"] = f"{name}_bnds"
     bounds = {name: entry for name, entry in axes.items() if name.endswith("_bnds")}
     only = {name: entry for name, entry in axes.items() if name not in bounds}
-    return _with(xr.Dataset(bounds, only, dict(attrs)), held, headlines)
+    return extended(xr.Dataset(bounds, only, dict(attrs)), frames, headlines, own)
 
 
 def extended(
@@ -194,12 +185,12 @@ def extended(
     >>> run.air_temperature.attrs["ancillary_variables"], len(measured.data_vars)
     ('air_temperature_theory', 1)
     """
-    return _with(run, _measured(frames, own), headlines)
-
-
-def _with(run: xr.Dataset, held: dict[str, xr.Variable], headlines: Iterable[Any]) -> xr.Dataset:
-    """Return a dataset with variables and headlines, in which every variable names those derived from it."""
-    for dim in {dim for entry in held.values() for dim in entry.dims}:
+    declared = {name: variable(name, own) for name in frames}
+    held = {name: declared[name].holding(_array(declared[name], values)) for name, values in frames.items()}
+    sizes = {dim: size for entry in held.values() for dim, size in entry.sizes.items()}
+    wanted = {dim: names for dim, names in _LABELS.items() if sizes.get(dim) == len(names) and dim not in run.coords}
+    run = run.assign_coords({dim: _coordinate(dim, names, "") for dim, names in wanted.items()})
+    for dim in sizes:
         if dim not in run.coords and dim not in ("molecule", "drop"):
             raise KeyError(f"the dimension {dim!r} has no coordinate")
     names = []

@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -103,7 +104,7 @@ def tables(dataset: xr.Dataset) -> dict[str, bytes]:
                 columns += [_headed(dataset[name].isel({extra[0]: k}), f" {label}") for k, label in enumerate(labels)]
         if len(columns) > 1:
             head, body = zip(*columns, strict=True)
-            made[dimension] = _csv([head, *zip(*body, strict=True)])
+            made[dimension] = as_csv([head, *zip(*body, strict=True)])
     return made
 
 
@@ -125,10 +126,10 @@ def _headlines(dataset: xr.Dataset) -> bytes:
             attributes = dataset[name].attrs
             numbers = [float(dataset[key]) if key in dataset else "" for key in (name, f"{name}_se", f"{name}_theory")]
             rows.append((name, attributes["long_name"], *numbers, attributes["units"]))
-    return _csv(rows)
+    return as_csv(rows)
 
 
-def _csv(rows: list[tuple[object, ...]]) -> bytes:
+def as_csv(rows: Iterable[Iterable[object]]) -> bytes:
     """Return rows as CSV."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)

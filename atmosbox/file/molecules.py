@@ -15,8 +15,28 @@ if TYPE_CHECKING:
 
 __all__ = ["Molecules", "molecules"]
 
-_NEEDED = ("molecule_position", "molecule_speed", "molecule_mass", "molecule_diameter", "box_side", "wall_law")
-_NEEDED_OF_DISCS = ("disc_position", "disc_velocity", "disc_mass", "disc_diameter", "box_length")
+_MOLECULES = {
+    "position": "molecule_position",
+    "speed": "molecule_speed",
+    "mass": "molecule_mass",
+    "diameter": "molecule_diameter",
+    "side": "box_side",
+    "walls": "wall_law",
+}
+_DISCS = {
+    "position": "disc_position",
+    "speed": "disc_velocity",
+    "mass": "disc_mass",
+    "diameter": "disc_diameter",
+    "side": "box_length",
+}
+_OPTIONAL = {
+    "wall_temperature": "wall_temperature",
+    "liquid": "liquid_molecule_count",
+    "rained": "rained_molecule_count",
+    "neighbours": "molecule_neighbour_count",
+}
+"""The variables of the fields of `Molecules`, for molecules and for discs."""
 
 Floats = NDArray[np.floating]
 Whole = NDArray[np.integer]
@@ -106,47 +126,31 @@ def molecules(dataset: xr.Dataset, *otherwise: Given | str) -> Molecules:
         raise FileError(f"{source} holds no molecules", again, *otherwise)
     if dataset.sizes.get("elapsed_time", 0) == 0:
         raise FileError(f"{source} holds no frame, for the run was stopped before its first", again)
-    missing = [name for name in (_NEEDED_OF_DISCS if discs else _NEEDED) if name not in dataset]
+    needed = _DISCS if discs else _MOLECULES
+    missing = [name for name in needed.values() if name not in dataset]
     if missing:
         raise FileError(f"{source} was written by an earlier atmosbox and lacks {missing[0]}", again)
-    held = _discs(dataset) if discs else _molecules(dataset)
-    frames = dataset.sizes["elapsed_time"]
-    return Molecules(
-        discs=discs,
-        time=dataset["elapsed_time"].values,
-        wall_temperature=_values(dataset, "wall_temperature", "wall", np.full((frames, 6), np.nan)),
-        liquid=_values(dataset, "liquid_molecule_count", "", None),
-        rained=_values(dataset, "rained_molecule_count", "", None),
-        **held,
-    )
-
-
-def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the fields of `Molecules` from what ``--save-molecules`` has saved."""
-    position = _values(dataset, "molecule_position", "molecule axis")
-    names = dataset["wall_law"].attrs["flag_meanings"].split()
-    neighbours = _values(dataset, "molecule_neighbour_count", "molecule")
-    if neighbours is not None:
-        periodic = [names[int(law)] == "periodic" for law in dataset["wall_law"].values[::2]]
-        position = _about_the_drop(position, neighbours[-1], _values(dataset, "box_side", "axis"), periodic)
-    drops = None
-    if "drop_position" in dataset:
-        radius = _values(dataset, "drop_radius", "drop")
-        drops = np.concatenate((_values(dataset, "drop_position", "drop axis"), radius[:, :, None]), axis=2)
-    return {
-        "position": position,
-        "speed": _values(dataset, "molecule_speed", "molecule"),
-        "mass": dataset["molecule_mass"].values,
-        "diameter": dataset["molecule_diameter"].values,
-        "water": dataset["species"].values == 1 if "species" in dataset else None,
-        "side": _values(dataset, "box_side", "axis"),
-        "walls": tuple(names[int(law)] for law in dataset["wall_law"].values),
-        "planar": position.shape[1] > 1 and float(np.ptp(position[0, :, 1])) == 0.0,
-        "gravity": _falls(dataset),
-        "drops": drops,
-        "neighbours": neighbours,
-        "right": dataset["gas"].values == 1 if "gas" in dataset else None,
-    }
+    held: dict[str, Any] = {field: _values(dataset, name) for field, name in {**needed, **_OPTIONAL}.items()}
+    frames, position = dataset.sizes["elapsed_time"], held["position"]
+    if discs:
+        held |= {"planar": True, "gravity": False, "water": None, "walls": ("specular",) * 6}
+        held |= {"speed": np.linalg.norm(held["speed"], axis=2), "side": np.tile(held["side"], (frames, 1))}
+    else:
+        names = dataset["wall_law"].attrs["flag_meanings"].split()
+        held["walls"] = walls = tuple(names[int(law)] for law in held["walls"])
+        held["planar"] = position.shape[1] > 1 and float(np.ptp(position[0, :, 1])) == 0.0
+        held["gravity"] = _falls(dataset)
+        held["water"] = dataset["species"].values == 1 if "species" in dataset else None
+        held["right"] = dataset["gas"].values == 1 if "gas" in dataset else None
+        if held["neighbours"] is not None:
+            periodic = [law == "periodic" for law in walls[::2]]
+            held["position"] = _about_the_drop(position, held["neighbours"][-1], held["side"], periodic)
+        if "drop_position" in dataset:
+            radius = _values(dataset, "drop_radius")[:, :, None]
+            held["drops"] = np.concatenate((_values(dataset, "drop_position"), radius), axis=2)
+    if held["wall_temperature"] is None:
+        held["wall_temperature"] = np.full((frames, 6), np.nan)
+    return Molecules(discs=discs, time=dataset["elapsed_time"].values, **held)
 
 
 def _falls(dataset: xr.Dataset) -> bool:
@@ -175,24 +179,7 @@ def _about_the_drop(position: Any, neighbours: Any, side: Any, periodic: list[bo
     return moved.astype(position.dtype)
 
 
-def _discs(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the fields of `Molecules` from the discs of a planar scene."""
-    position = _values(dataset, "disc_position", "molecule axis")
-    return {
-        "position": position,
-        "speed": np.linalg.norm(_values(dataset, "disc_velocity", "molecule axis"), axis=2),
-        "mass": dataset["disc_mass"].values,
-        "diameter": dataset["disc_diameter"].values,
-        "water": None,
-        "side": np.tile(dataset["box_length"].values, (len(position), 1)),
-        "walls": ("specular",) * 6,
-        "planar": True,
-        "gravity": False,
-    }
-
-
-def _values(dataset: xr.Dataset, name: str, dimensions: str, otherwise: Any = None) -> Any:
-    """Return a variable with time as its first dimension and then `dimensions`; `otherwise` if there is none."""
-    if name not in dataset:
-        return otherwise
-    return dataset[name].transpose("elapsed_time", *dimensions.split()).values
+def _values(dataset: xr.Dataset, name: str) -> Any:
+    """Return a variable with its dimensions in the order of `Molecules`; None if there is none."""
+    order = ("elapsed_time", "molecule", "drop", "wall", "axis")
+    return dataset[name].transpose(*order, missing_dims="ignore").values if name in dataset else None

@@ -192,20 +192,20 @@ def cost_line(collisions: int, seconds: float) -> str:
     )
 
 
-def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: float) -> dict[str, Any]:
+def outcome_json(outcome: Outcome, *, scene: str, path: Path, limit: float) -> dict[str, Any]:
     """Return a run as a record for JSON."""
     rate = outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None
     return {
         "scene": scene,
         "status": str(outcome.dataset.attrs.get("atmosbox_status", "complete")),
-        "file": None if path is None else str(path),
+        "file": str(path),
         "headlines": [headline_json(headline) for headline in outcome.headlines],
         "ledger": {"residual": outcome.ledger, "limit": limit, "closes": bool(outcome.ledger <= limit)},
         "energy_made_by_the_scheme": outcome.made,
         "collisions": outcome.collisions,
         "seconds": outcome.seconds,
         "collisions_per_second": rate,
-        "next": None if path is None else next_command("plot", path),
+        "next": next_command("plot", path),
     }
 
 
