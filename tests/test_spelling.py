@@ -103,6 +103,13 @@ WORDS = {
     r"who carries|who changes the": "what",
     r"another history": "grows in other steps",
     r"at the expense of": "gained from, takes from",
+    r"as it comes": "with the default settings",
+    r"in leaps": "in jumps",
+    r"(at|in|with) even ratios": "in equal ratios",
+    r"(minute|second|hour)s? buys?": "what more computing time gives",
+    r"all the way up": "at every height",
+    r"looks at it thousands": "tests it",
+    r"proves? nothing by itself": "what it does not show",
 }
 """Words and turns of phrase that a first-year student has to guess at, and what to say."""
 
