@@ -278,7 +278,7 @@ def test_a_sum_carries_its_error_and_knows_what_it_has_in_common_with_itself():
     assert filled("{{ last(A.s) }} {{ mean(A.s) }} {{ highest(A.s) }} {{ A.n }}", names) == "2 2 9 800"
     assert filled("{{ word(A.x - A.y, 'warmer', 'colder') }} {as it is}", names) == "colder {as it is}"
     assert filled("{{ round(1, 10 ** 9) }}", names) == "1.000000000000"
-    with pytest.raises(ConfigError, match="there is no theory"):
+    with pytest.raises(ConfigError, match="this number has no theory"):
         filled("{{ A.y.theory }}", names)
 
 

@@ -76,7 +76,7 @@ def _part(number: Any, name: str) -> Any:
     if name not in _PARTS:
         raise ConfigError(f"a number has no {shown(name)}: give one of {', '.join(_PARTS)}")
     if name not in ("value", "error") and getattr(number, "theory", None) is None:
-        raise ConfigError(f"this number has no theory, and so no {name}: leave it out")
+        raise ConfigError(f"this number has no theory: leave its {name} out")
     return _PARTS[name](number)
 
 
