@@ -61,7 +61,7 @@ VARIABLES: dict[str, Variable] = {
         ("rotational_energy", "J", "rotational energy of the molecules"),
         ("potential_energy", "J", "potential energy of the molecules, in gravity and by attraction"),
         ("numerical_heat", "J", "energy that the scheme of an approximate engine has made by itself"),
-        ("ledger_residual", "1", "residual of the energy budget, as a share of the energy that there is or has passed"),
+        ("ledger_residual", "1", "residual of the energy budget, as a share of the energy in the box or exchanged"),
         cell_methods=_POINT, ledger=True,
     ),
     **_declared(
@@ -73,8 +73,8 @@ VARIABLES: dict[str, Variable] = {
     **_declared(_TIME, ("work_by_piston", "J", "work done on the molecules by the piston"),
                 ("work_by_gravity", "J", "energy given to the molecules by changes of gravity"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
-    **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, which was changed by hand"),
-                ("pool_open_share", "1", "share of the pool that is open, which was changed by hand"),
+    **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, if it was changed during the run"),
+                ("pool_open_share", "1", "share of the pool that is open, if it was changed during the run"),
                 cell_methods=_POINT),
     **_declared((*_TIME, "wall"), ("heat_from_wall", "J", "heat given to the molecules by the wall"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
@@ -98,7 +98,7 @@ VARIABLES: dict[str, Variable] = {
                 cell_methods=_POINT, comment=_SUM, ledger=True),
     **_declared(
         _TIME,
-        ("virial_pressure", "Pa", "pressure inside, by the motion and the forces of molecules"),
+        ("virial_pressure", "Pa", "pressure by the motion of molecules and the forces between them"),
         ("normal_pressure", "Pa", "pressure across the surface of the liquid"),
         ("surface_tension", "N m-1", "surface tension of the liquid"),
         ("liquid_number_density", "m-3", "number of molecules in a cubic metre of liquid"),
@@ -151,7 +151,7 @@ VARIABLES: dict[str, Variable] = {
         ("largest_haze_mixing_ratio", "kg kg-1", "mass of liquid water per mass of dry air, above which it is a cloud"),
         ("rain_mixing_ratio", "kg kg-1", "mass of water that has rained out so far per mass of dry air"),
         ("liquid_temperature", "K", "temperature of the liquid water"),
-        ("drop_area", "m2", "area of all drops at which molecules hit them"),
+        ("drop_area", "m2", "total area at which molecules hit drops"),
         ("condensation_rate", "s-1", "number of molecules that condense per time"),
         ("evaporation_rate", "s-1", "number of molecules that evaporate per time"),
         cell_methods=_MEAN,
@@ -223,8 +223,8 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(
         _TIME,
-        ("wind_speed", "m s-1", "root mean square of the wind less its thermal noise; negative where noise prevails"),
-        ("roll_speed", "m s-1", "root mean square of the amplitudes of all rolls less their noise; negative likewise"),
+        ("wind_speed", "m s-1", "root mean square of the wind minus its thermal noise; negative where noise is larger"),
+        ("roll_speed", "m s-1", "root mean square of the amplitudes of all rolls minus their noise"),
         cell_methods=_MEAN,
     ),
     **_declared(_TIME, ("core_lapse_rate", "K m-1", "lapse rate between three and seven tenths of the height"),
@@ -246,7 +246,7 @@ VARIABLES: dict[str, Variable] = {
     # Two gases that mix
     **_declared(
         _TIME,
-        ("mixing_amplitude", "1", "longest wave of the left-right difference of two gases, as a share of its start"),
+        ("mixing_amplitude", "1", "longest wave of the left-right difference of two gases, over that at the start"),
         ("mixing_entropy", "1", "entropy of mixing per molecule, over that of gases that are mixed"),
         cell_methods=_POINT,
     ),
@@ -271,7 +271,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(
         _TIME,  # NaN where walls were warmed by hand
-        ("momentum_residual", "1", "momentum that neither the discs have nor the walls took, as a share"),
+        ("momentum_residual", "1", "missing momentum, neither in the discs nor taken by walls, as a share"),
         cell_methods=_POINT,
     ),
     **_declared((*_TIME, "axis"), ("momentum", "kg m s-1", "total momentum of the discs"),
