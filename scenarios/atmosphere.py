@@ -12,14 +12,14 @@ below: it turns over, and therefore cools with height. Left alone, without sun a
 isothermal like this one in some 100,000 years. The figure shows both. The scene ``convection`` heats the air from
 below.
 
-Modelled: spheres in uniform gravity, exact parabolas, hard if they are 5,000 or fewer (of more, those that collide
-are drawn at random, as often as spheres would meet), periodic sides, a floor that is a heat bath or smooth, a smooth
-ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Left out: water, wind, sunshine.
-Each molecule stands for some 10^33 real ones or more and is some 70 metres wide or more, so that it meets others
-within a stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it
-becomes for molecules so wide: hard ones exclude volume from each other, and no centre comes nearer to floor or
-ceiling than its radius, so that a part of the lowest and of the highest layer is empty. With ``plane`` the air is
-discs in a plane, and a slab one scale height thick stands for the third dimension.
+Modelled: molecules in uniform gravity on exact parabolas, periodic sides, a floor that is a heat bath or smooth, a
+smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Up to 5,000 molecules are
+hard spheres; with more, chance decides which of them collide, as often as spheres would. Left out: water, wind,
+sunshine. Each molecule stands for 10^33 or more real ones and is 70 metres or more wide, so that its mean free path is
+a stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it becomes for
+molecules so wide: hard ones exclude volume from each other, and no centre comes nearer to floor or ceiling than its
+radius, so that a part of the lowest and of the highest layer is empty. With ``plane`` the air is discs in a plane, and
+a slab one scale height thick stands for the third dimension.
 """
 
 import math

@@ -145,7 +145,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "real molecules per simulated one": "1",
             "exaggeration": f"none in the gas; the drops are {settings.drop_size:g} times as wide as real ones"
             if drops
-            else "none in the gas; the droplets have far more area than so little water could",
+            else "none in the gas; the droplets have far more area than so little water could have",
             "vapour at the start": f"{start.vapour} molecules; {start.full:.0f} saturate the air",
             "time to condense": f"{memory * 1e9:.2g} ns",
             "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % in each sample",

@@ -197,7 +197,7 @@ class Box:
         self.density = n / (self.height * self.width)
         # the diameter of spheres whose mean free path is 1
         across = rounded((math.sqrt(2.0) * math.pi * self.density) ** -0.5) if self.thin else 1.0
-        # dsmc conducts better, and is more viscous, for its cells; that of an occupancy is not known here
+        # the cells of dsmc raise its conductivity and viscosity: by how much is known only for the usual cells
         self.usual = not {"cell", "occupancy"} & set(engine.options)
         cell = float(engine.options.get("cell", CELL)) if self.thin else 0.0
         self.gas = law.Gas((5 if settings.rotation else 3) if self.thin else 2, across, cell)

@@ -10,12 +10,11 @@ air has no influence on it. That in the end as many molecules come back as leave
 run tests the vapour pressure and the temperature at which this happens, and the energy of the molecules that leave. It
 also shows that the pool cools first and the air follows, and how much so few molecules scatter.
 
-Modelled: molecules of air and water of real size and density under a piston that keeps the pressure, hard spheres if
-they are 5,000 or fewer (of more, those that collide are drawn at random); a pool on the floor. Every molecule of
-vapour that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it at a rate that
-depends on its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no volume;
-forces between molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is needed
-to remove it.
+Modelled: molecules of air and water of real size and density under a piston that keeps the pressure; a pool on the
+floor. Up to 5,000 molecules are hard spheres; with more, chance decides which of them collide. Every molecule of vapour
+that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it at a rate that depends on
+its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no volume; forces between
+molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is needed to remove it.
 """
 
 import math

@@ -8,15 +8,15 @@ Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energ
 pressure at each moment. What emerges is the level of the cloud base, where the parcel, cooled by the receding piston,
 becomes saturated, and both lapse rates.
 
-Modelled: molecules of air and water that rotate, hard spheres if they are 5,000 or fewer; of more, those that
-collide are drawn at random; droplets too fine to draw, of one temperature, carried along by the air; the latent
-heat, which follows from the binding energy and the heat capacities; a hydrostatic environment of constant lapse
-rate. Reversible: the droplets stay in the parcel; with rain=on the cloud holds a gram per kilogram, and any more
-falls out, which is nearly pseudo-adiabatic. Left out: ice, the curvature of droplets and what is dissolved in them;
-gravity inside the parcel; mixing with the environment. Exaggerated: some kilometres are climbed within nanoseconds,
-in a few hundred collisions of each molecule; the molecules are larger than those of air; the droplets have far
-more area than so little water could. Few molecules are vapour, one in fifty, and already below the cloud base some
-of them are clustered, RH / (1 - RH) on average.
+Modelled: molecules of air and water that rotate (up to 5,000 are hard spheres; with more, chance decides which of them
+collide); droplets too fine to draw, of one temperature, carried along by the air; the latent heat, which follows from
+the binding energy and the heat capacities; a hydrostatic environment of constant lapse rate. Reversible: the droplets
+stay in the parcel; with rain=on the cloud holds a gram per kilogram, and any more falls out, which is nearly
+pseudo-adiabatic. Left out: ice, the curvature of droplets and what is dissolved in them; gravity inside the parcel;
+mixing with the environment. Exaggerated: some kilometres are climbed within nanoseconds, in a few hundred collisions of
+each molecule; the molecules are larger than those of air; the droplets have far more area than so little water could
+have. Few molecules are vapour, one in fifty, and already below the cloud base some of them are clustered, RH / (1 - RH)
+on average.
 """
 
 import functools

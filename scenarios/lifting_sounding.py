@@ -5,12 +5,12 @@ environment, it must be pushed; above the level of free convection its cloud is 
 the equilibrium level. The area between the two curves is the energy that buoyancy can give each kilogram
 of air.
 
-Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
-at random; droplets too fine to draw, of one temperature, carried along by the air; the environment as it was
-measured, hydrostatic; buoyancy of density temperatures. Reversible: the droplets stay in the parcel, and their
-weight counts; with rain=on the cloud holds a gram per kilogram. Left out: ice, the curvature of droplets; mixing
-with the environment, which weakens every real cloud; the parcel's own motion: it is lifted at a steady rate,
-whatever its buoyancy. Exaggerated: some ten kilometres are climbed within nanoseconds.
+Modelled: molecules of air and water (up to 5,000 are hard spheres; with more, chance decides which of them collide);
+droplets too fine to draw, of one temperature, carried along by the air; the environment as it was measured,
+hydrostatic; buoyancy of density temperatures. Reversible: the droplets stay in the parcel, and their weight counts;
+with rain=on the cloud holds a gram per kilogram. Left out: ice, the curvature of droplets; mixing with the environment,
+which weakens every real cloud; the parcel's own motion: it is lifted at a steady rate, whatever its buoyancy.
+Exaggerated: some ten kilometres are climbed within nanoseconds.
 """
 
 import functools

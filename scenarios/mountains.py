@@ -8,11 +8,10 @@ at that rate. Without rain it would arrive with the temperature at which it star
 Prescribed: the curve e_s(T), the path, and how much cloud rains out, and how fast. What emerges is where clouds begin
 and end, how much rain falls, and how warm the parcel arrives.
 
-Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
-at random; droplets too fine to draw, of one temperature, carried along by the air; rain, which falls out of the cloud
-with its heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind,
-mixing with the environment, heat from the ground and from the sun. Exaggerated: eight kilometres up and down within
-nanoseconds.
+Modelled: molecules of air and water (up to 5,000 are hard spheres; with more, chance decides which of them collide);
+droplets too fine to draw, of one temperature, carried along by the air; rain, which falls out of the cloud with its
+heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind, mixing with the environment,
+heat from the ground and from the sun. Exaggerated: eight kilometres up and down within nanoseconds.
 """
 
 import functools

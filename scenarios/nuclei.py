@@ -3,8 +3,8 @@
 A molecule leaves a small drop more easily than a flat surface: the drop's surface shrinks, and releases surface energy.
 A small drop evaporates unless the air is strongly supersaturated; the smaller the drop, the more. And every drop begins
 small. Salt helps: where part of the molecules are salt, fewer are water, and fewer leave. In one box of supersaturated
-air there are drops with a grain of salt in them and drops of pure water, of as many molecules. Those with salt grow.
-The others vanish, though the humidity is the same for all.
+air there are drops with a grain of salt in them and drops of pure water, of the same number of molecules. Those with
+salt grow. The others vanish, though the humidity is the same for all.
 
 Prescribed: the surface energy of a drop, from the measured tension of water and the volume of its molecules; the curve
 e_s(T) of a flat surface; and an ideal solution, in which all ways to arrange water and salt are equally likely. What

@@ -161,8 +161,8 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
     ("part", "wrong", "sentence"),
     [
         (WHOLE, "", "is not a link of a run, or only a part of one: copy the link again from the page, as a whole"),
-        ("&end", "", "is no link of a run, or only a part"),
-        ("&end", "&end&x=1", "is no link of a run"),
+        ("&end", "", "is not a link of a run, or only a part"),
+        ("&end", "&end&x=1", "is not a link of a run"),
         (__version__, "9.8", f"is of atmosbox 9.8, and this is {__version__}, whose numbers may differ: type pip"),
         ("=temperature", "=nowhere", "is for a scene that there is not, nowhere: type atmosbox list."),
         ("=temperature", "=..%2Fown.py", "is for a scene of your own, whose file must be typed, ../own.py: type"),
@@ -175,7 +175,7 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
         (":60", ":nan", "has turns of knobs that cannot be read"),
         (":60", ":60,2:temperature:50", "has turns of knobs that cannot be read"),  # backwards
         (":60", ":60" + ",3:temperature:60" * 5_000, "has turns of knobs that cannot be read"),  # too many
-        (":60", ":60" + ",3:temperature:60" * 20_000, "is no link of a run"),
+        (":60", ":60" + ",3:temperature:60" * 20_000, "is not a link of a run"),
         ("frames=9", "frames=1000001", "is of more than 1000000 frames"),
         ("&frames", "&predict=air_temperature:1,2,3,4&frames", "has a prediction that cannot be read: it needs a"),
         ("&frames", "&predict=air_temperature:1,2,warm,4,5&frames", "has a prediction that cannot be read"),

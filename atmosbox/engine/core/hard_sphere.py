@@ -16,8 +16,9 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
     r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
     They touch when :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, below zero while they approach, and
-    :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0): then a pair that moves apart has none above
-    zero either, unless it overlaps, and one test rejects nearly all pairs that do not meet.
+    :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) in place of b: then that of a
+    pair that moves apart is not above zero either, unless it overlaps, and one test rejects nearly all pairs that do
+    not meet.
 
     Parameters
     ----------

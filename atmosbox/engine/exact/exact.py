@@ -148,7 +148,7 @@ def proceed(gas, until, most, modes):
                 at, other = meet(i, j, t, at, gas, modes)
                 contacts += 1
             else:
-                # a contact with itself at the time of its clock is entered by `call`: that is no stale prediction
+                # a contact with itself at the time of its clock is a request by `call`, and not a stale prediction
                 stale += 1 if j != i or gas.molecules[i].clock < t else 0
                 j = -1
         else:

@@ -215,7 +215,7 @@ def search(i, t, at, boundary, gas, modes):
     sx = _narrowed(at.x, before[0], size, 0, cells)
     sy = _narrowed(at.y, before[1], size, 1, cells)
     sz = _narrowed(at.z, before[2], size, 2, cells)
-    # at a boundary it enters cells in one layer: their number along that axis is all even or all odd, so a fixed set
+    # at a boundary it enters cells of one layer: their numbers along that axis are all even or all odd, so a fixed set
     # of bits names them (`rows` tells which bit is which cell)
     crossing = boundary < CONTACT
     entered = 0xFF
