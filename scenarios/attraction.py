@@ -276,7 +276,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             f"{scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
             "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
-            "units": f"of time {scale.time * 1e12:.2f} ps, of pressure {scale.pressure / 1e2:.0f} hPa",
+            "units": f"of time {scale.time * 1e12:.2f} ps, of pressure {round(scale.pressure / 1e2, -3):.0f} hPa",
             "not water": "the critical temperature of water is four times as high (hydrogen bonds are not modelled)",
         },
         knobs=tuple(knobs),

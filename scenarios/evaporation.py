@@ -141,7 +141,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         parcel,
         settings,
         "temperature",
-        "temperature of the side walls, which at first let no heat through",
+        "temperature of the side walls, insulated at first",
         range(4),
         scale.reduced_temperature,
         low=-20.0,

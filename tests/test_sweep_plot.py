@@ -70,7 +70,7 @@ def test_one_setting_becomes_points_with_bars_and_theory_dashed():
 
 
 SLAB = {
-    "vapor_pressure": ("Pa", "bar", [5.8e5, 11.7e5, 22.3e5], [0.5e5, 0.7e5, 0.9e5]),
+    "vapor_pressure": ("Pa", "hPa", [5.8e5, 11.7e5, 22.3e5], [0.5e5, 0.7e5, 0.9e5]),
     "clapeyron_slope": ("K", "K", [763.0, 831.0, 978.0], [65.0, 51.0, 48.0]),
     "liquid_density": ("kg m-3", "kg m-3", [1205.0, 1122.0, 1012.0], [1.0, 2.0, 7.0]),
     "vapor_density": ("kg m-3", "kg m-3", [24.2, 52.9, 128.6], [1.5, 2.1, 6.5]),
@@ -96,7 +96,9 @@ def test_vapour_pressures_are_drawn_over_one_over_temperature_with_the_slope_of_
     left, right = drawing.axes
     assert (left.get_xlabel(), left.get_yscale()) == ("1000 K / T", "log")
     points = left.containers[0].lines[0].get_xydata()[::2]
-    np.testing.assert_allclose(points, np.column_stack([1e3 / np.array([111.4, 123.8, 136.2]), [5.8, 11.7, 22.3]]))
+    np.testing.assert_allclose(
+        points, np.column_stack([1e3 / np.array([111.4, 123.8, 136.2]), [5800.0, 11700.0, 22300.0]])
+    )
     (line,) = [line for line in left.lines if line.get_linewidth() == max(each.get_linewidth() for each in left.lines)]
     ends = line.get_xydata().reshape(3, 3, 2)[:, :2]  # two ends and a gap for each run
     slopes = np.diff(np.log(ends[:, :, 1]), axis=1) / np.diff(ends[:, :, 0], axis=1)

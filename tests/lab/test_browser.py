@@ -615,6 +615,9 @@ def test_a_thermometer_tells_its_scatter_and_why_and_means_stand_beside_theory(l
     ).groups()
     assert float(mean) == pytest.approx(25.0, abs=4.0 * float(error))
     assert 0.2 < float(error) < 3.0
+    shown.ask(type="set", name="temperature", value=225.0)
+    shown.ask(type="frames", value=900)
+    page.locator(".graph .sentences", has_text="mean since the last change (theory 225").wait_for(timeout=20_000)
     page.locator(".term", has_text="n k T").click()
     page.locator("#notes .note", has_text="Z is a little more than 1").wait_for(timeout=5_000)
 

@@ -28,7 +28,8 @@ export function meansOf(curves, { since, changed }, unit) {
   return measured.flatMap((curve, place) => {
     const theory = theories[Math.min(place, theories.length - 1)];
     const late = curve.x.map((time, index) => index).filter((index) => curve.x[index] >= since && Number.isFinite(curve.y[index]));
-    const expected = late.map((index) => theory.y[index]).filter(Number.isFinite);
+    const then = (index) => (theory.x.length === curve.x.length ? index : theory.x.findLastIndex((time) => time <= curve.x[index])); // means over parts of the time
+    const expected = late.map((index) => theory.y[then(index)]).filter(Number.isFinite);
     if (late.length < 2 * BLOCKS || expected.length < late.length) return [];
     const [mean, error] = meanAndError(late.map((index) => curve.y[index]));
     if (!(error > 0)) return [];
