@@ -144,7 +144,7 @@ def main(arguments: list[str] | None = None) -> None:
                 share += cost[kind]
                 show(share, "running")
     except KeyboardInterrupt:
-        print(f"stopped; {path} holds what has been measured, and the same command goes on", file=sys.stderr)
+        print("stopped; the same command goes on with the runs that are missing", file=sys.stderr)
         sys.exit(130)
     print(f"{path}: {len(runs['onset'])} runs at the onset, {len(runs['growth'])} in which rolls grow")
 
