@@ -83,12 +83,21 @@ def pytest_sessionfinish(session):
             file.write(json.dumps(said) + "\n")
 
 
+COMPILING = ("test_sheet", "test_engines", "test_extremes", "test_same_run", "test_stepped")
+"""Files that compile most kernels: the second kernel of an engine takes half as long in the process of the first."""
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Give all tests of a file to one worker: they share compiled kernels, and the site or the run of a fixture."""
+    """Give all tests of a file to one worker, which share the run of a fixture, and so those of all `COMPILING`."""
     from xdist.scheduler import LoadFileScheduling
 
-    return LoadFileScheduling(config, log) if config.getoption("dist") == "load" else None
+    class ByKernels(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            file = super()._split_scope(nodeid)
+            return "compiling" if os.path.basename(file)[:-3] in COMPILING else file
+
+    return ByKernels(config, log) if config.getoption("dist") == "load" else None
 
 
 MODES = {
@@ -155,17 +164,10 @@ def pytest_terminal_summary(terminalreporter, config):
 
 
 BROWSER_FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-quic",
-    "--enable-unsafe-swiftshader",
-    "--use-gl=angle",
+    "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-sync",
+    "--disable-component-update", "--disable-quic", "--enable-unsafe-swiftshader", "--use-gl=angle",
     "--use-angle=swiftshader",
-]
+]  # fmt: skip
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
