@@ -72,7 +72,7 @@ def test_collisions_keep_energy_and_momentum(rotation):
 
 
 @many_molecules
-def test_the_ledger_closes_with_every_wall_gravity_rotation_and_a_driven_piston():
+def test_the_energy_budget_closes_with_every_wall_gravity_rotation_and_a_driven_piston():
     gas = everything()
     gas.advance(100.0)
     assert min(gas.wall_hits) > 1000
