@@ -103,8 +103,7 @@ def pytest_xdist_make_scheduler(config, log):
 MODES = {
     "contacts rows": "equal molecules between walls, and in a plane: the scene temperature",
     "contacts mixed rows": "molecules of several kinds: elastic-collisions",
-    "contacts periodic rows": "a periodic box: diffusion",
-    "contacts mixed periodic rows": "unlike gases: diffusion",
+    "contacts periodic rows": "a periodic box: diffusion of gases alike",
     "contacts gravity rows": "gravity between walls: convection",
     "contacts gravity periodic rows": "a column: atmosphere",
     "contacts rotation piston ascends rows": "air that rises: lifting-dry",
@@ -158,9 +157,8 @@ def unlisted(config):
 def pytest_terminal_summary(terminalreporter, config):
     """Name what has to be listed, or marked nightly."""
     for name in unlisted(config):
-        terminalreporter.write_line(
-            f"not among the sets of modes in tests/conftest.py: {name or 'points that do not rotate'}"
-        )
+        said = name or "points that do not rotate"
+        terminalreporter.write_line(f"not among the sets of modes in tests/conftest.py: {said}")
 
 
 BROWSER_FLAGS = [

@@ -78,6 +78,7 @@ def test_the_second_approximation_is_that_of_chapman_and_cowling(monkeypatch):
     assert law.diffusivity_factor.__wrapped__((first, second)) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.nightly
 def test_unlike_gases_mix_as_the_boltzmann_equation_says():
     settings = {"mass_ratio": 10.0, "diameter": "0.8 nm", "molecules": 2000, "duration": 1.5}
     runs = [atmosbox.run("diffusion", seed=seed, **settings) for seed in range(8)]
