@@ -83,19 +83,27 @@ def pytest_sessionfinish(session):
             file.write(json.dumps(said) + "\n")
 
 
+COMPILING = ("test_sheet", "test_engines", "test_extremes", "test_same_run", "test_stepped")
+"""Files that compile most kernels: the second kernel of an engine takes half as long in the process of the first."""
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Give all tests of a file to one worker: they share compiled kernels, and the site or the run of a fixture."""
+    """Give all tests of a file to one worker, which share the run of a fixture, and so those of all `COMPILING`."""
     from xdist.scheduler import LoadFileScheduling
 
-    return LoadFileScheduling(config, log) if config.getoption("dist") == "load" else None
+    class ByKernels(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            file = super()._split_scope(nodeid)
+            return "compiling" if os.path.basename(file)[:-3] in COMPILING else file
+
+    return ByKernels(config, log) if config.getoption("dist") == "load" else None
 
 
 MODES = {
     "contacts rows": "equal molecules between walls, and in a plane: the scene temperature",
     "contacts mixed rows": "molecules of several kinds: elastic-collisions",
-    "contacts periodic rows": "a periodic box: diffusion",
-    "contacts mixed periodic rows": "unlike gases: diffusion",
+    "contacts periodic rows": "a periodic box: diffusion of gases alike",
     "contacts gravity rows": "gravity between walls: convection",
     "contacts gravity periodic rows": "a column: atmosphere",
     "contacts rotation piston ascends rows": "air that rises: lifting-dry",
@@ -149,23 +157,15 @@ def unlisted(config):
 def pytest_terminal_summary(terminalreporter, config):
     """Name what has to be listed, or marked nightly."""
     for name in unlisted(config):
-        terminalreporter.write_line(
-            f"not among the sets of modes in tests/conftest.py: {name or 'points that do not rotate'}"
-        )
+        said = name or "points that do not rotate"
+        terminalreporter.write_line(f"not among the sets of modes in tests/conftest.py: {said}")
 
 
 BROWSER_FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-quic",
-    "--enable-unsafe-swiftshader",
-    "--use-gl=angle",
+    "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-sync",
+    "--disable-component-update", "--disable-quic", "--enable-unsafe-swiftshader", "--use-gl=angle",
     "--use-angle=swiftshader",
-]
+]  # fmt: skip
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 

@@ -32,7 +32,7 @@ def headline(name="lapse_rate", value=9.7e-3, **fields):
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_a_ledger_that_is_not_finite_stops_the_run(value):
+def test_an_energy_budget_that_is_not_finite_stops_the_run(value):
     with pytest.raises(EngineError, match=r"kinetic_energy is not finite at \[1\]"):
         dataset({"kinetic_energy": [1.0, value, 2.0]}, TIMES, {})
 

@@ -80,7 +80,7 @@ PARTS = [
     ("temperature", "", {}, {}, {MOVES, WALLS}),
     ("temperature-large", "", SMALL, {}, {MOVES, WALLS}),
     ("elastic-collisions", "", {}, {}, {MOVES}),
-    ("diffusion", "", {"molecules": 300, "mass_ratio": 4}, {}, {MOVES}),
+    ("diffusion", "", {"molecules": 300}, {}, {MOVES}),
     ("atmosphere", "exact", SMALL, {"temperature": 400.0}, {MOVES, FALLS, WALLS}),
     ("atmosphere", "exact", SMALL | {"plane": True}, {}, {MOVES, FALLS, WALLS}),
     ("atmosphere", "exact", SMALL | {"start": "bottom", "floor": "isolated"}, {}, {MOVES, FALLS}),

@@ -164,9 +164,9 @@ def killed_again_and_again(words, folder, kills, draw, *program):
 
 def test_the_command_killed_at_a_random_moment_goes_on_bit_for_bit(tmp_path):
     """kill -9, like switching off the computer: the run continues from the last saved state."""
-    words = ["run", "temperature", "--set", "molecules=5000", "--quiet", "--out", "x.nc"]
+    words = ["run", "temperature", "--set", "molecules=2500", "--quiet", "--out", "x.nc"]
     whole = tmp_path / "whole.nc"
-    prepared = runner.prepare("temperature", {"molecules": 5000}, save_molecules=None)
+    prepared = runner.prepare("temperature", {"molecules": 2500}, save_molecules=None)
     runner.execute(prepared, checkpoint=Checkpoint(whole), command=" ".join(["atmosbox", *words]))
     killed = tmp_path / "killed"
     assert killed_again_and_again(words, killed, 1, random.Random(17), "-c", OFTEN)

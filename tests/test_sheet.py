@@ -251,7 +251,7 @@ class Run:
         return self.facts[name]
 
 
-def test_a_hostile_sum_is_refused_in_no_time():
+def test_a_sum_that_would_take_for_ever_is_refused_at_once():
     cases = [
         "{{ ().__class__.__base__.__subclasses__() }}", "{{ A.__class__ }}", "{{ A.x.__init__.__globals__ }}",
         "{{ A.fact.__func__ }}", "{{ round.__globals__ }}", "{{ self.__init__ }}", "{{ ''.format }}",

@@ -1,4 +1,4 @@
-"""Changes by hand: the energy ledger closes, molecules react, and a box that is not changed stays the same."""
+"""Changes by hand: the energy budget closes, molecules react, and a box that is not changed stays the same."""
 
 import math
 

@@ -69,7 +69,7 @@ def least_gap(parcel):
 
 
 @by_name
-def test_molecules_never_overlap_nor_leave_the_box_and_the_ledger_closes(name):
+def test_molecules_never_overlap_nor_leave_the_box_and_the_energy_budget_closes(name):
     parcel = ParcelSet(**box(name))
     radius = 0.5 * parcel.diameter[:, None]
     inside = np.where(parcel.periodic, 0.0, radius)

@@ -63,7 +63,7 @@ def unmix(word):
     return (unshift(z, 30) - 0x9E3779B97F4A7C15) % WORD
 
 
-def test_not_even_the_outermost_word_makes_a_zero_or_a_one():
+def test_the_largest_and_the_smallest_word_make_neither_one_nor_zero():
     for word in [0, 1, WORD // 2, WORD - 2, WORD - 1]:
         number = uniform(np.array([unmix(word)], np.uint64))
         assert 0.0 < number < 1.0

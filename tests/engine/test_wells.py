@@ -138,7 +138,7 @@ def test_energy_and_momentum_are_kept_and_wells_are_where_molecules_are_near(den
     assert np.abs(box.snapshot().velocity.sum(axis=0) - start).max() < 1e-10
 
 
-def test_the_heat_of_the_bath_is_in_the_ledger_and_it_keeps_its_temperature():
+def test_the_heat_of_the_bath_is_in_the_energy_budget_and_it_keeps_its_temperature():
     box = gas(200, 0.1, 1.0, bath=1.0)
     kinetic = []
     for frame in range(200):
@@ -152,7 +152,7 @@ def test_the_heat_of_the_bath_is_in_the_ledger_and_it_keeps_its_temperature():
     assert np.mean(kinetic) == pytest.approx(1.5 * 200, abs=4.0 * error)
 
 
-def test_strength_and_gravity_may_change_and_the_ledger_has_it():
+def test_a_change_of_strength_or_gravity_is_in_the_energy_budget():
     box = gas(200, 0.3, 1.0)
     box.advance(5.0)
     deep = box.well_energy

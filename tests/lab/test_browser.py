@@ -277,6 +277,7 @@ def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_aga
     assert free[65:70].mean() > free[40:50].mean() + 10.0  # the drop has gone with the attraction
 
 
+@pytest.mark.nightly  # for its box, kernels are compiled that no other unmarked test needs
 def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkeypatch):
     monkeypatch.setattr(lab_box, "ROW", 7)  # words; twice as many are enough at the start, and not for long
     settings = {"molecules": 600, "water": 200, "seed": 4}

@@ -37,7 +37,7 @@ def test_entropy_counted_from_few_molecules_is_not_too_small():
     assert abs(np.mean(corrected) - exact) < 4.0 * error
 
 
-@pytest.mark.parametrize("number", [4, pytest.param(8, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("number", [2, pytest.param(8, marks=pytest.mark.nightly)])
 def test_gases_alike_mix_as_fast_as_chapman_and_enskog_say_and_make_k_ln_2(number):
     runs = [atmosbox.run("diffusion", molecules=3000, seed=seed) for seed in range(number)]
     ratio = np.array([float(run.diffusion_coefficient / run.diffusion_coefficient_theory) for run in runs])
@@ -78,6 +78,7 @@ def test_the_second_approximation_is_that_of_chapman_and_cowling(monkeypatch):
     assert law.diffusivity_factor.__wrapped__((first, second)) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.nightly
 def test_unlike_gases_mix_as_the_boltzmann_equation_says():
     settings = {"mass_ratio": 10.0, "diameter": "0.8 nm", "molecules": 2000, "duration": 1.5}
     runs = [atmosbox.run("diffusion", seed=seed, **settings) for seed in range(8)]
