@@ -90,7 +90,7 @@ function curveOf(panel, line, numbers) {
   let curve = { label: line.label, role: line.role, x: clean(x, panel.x), y: clean(y, panel.y), error, faint };
   curve.steps = panel.kind === "histogram" && line.role === "data";
   curve.instants = timed && panel.across ? numbers.get("elapsed_time") : null;
-  if (panel.averages && line.role === "data" && !error) curve = { ...curve, ...averaged(curve, panel) };
+  if (panel.averages && line.role === "data" && !error) curve = { ...curve, ...averaged(curve, panel), whole: { x, y } };
   return { ...curve, from: startOf(curve, panel) };
 }
 

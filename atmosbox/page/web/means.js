@@ -26,12 +26,11 @@ export function meansOf(curves, { since, changed }, unit) {
   const theories = curves.filter(({ role }) => role === "theory"), measured = curves.filter(({ role }) => role === "data");
   if (!theories.length) return [];
   return measured.flatMap((curve, place) => {
-    const theory = theories[Math.min(place, theories.length - 1)];
-    const late = curve.x.map((time, index) => index).filter((index) => curve.x[index] >= since && Number.isFinite(curve.y[index]));
-    const then = (index) => (theory.x.length === curve.x.length ? index : theory.x.findLastIndex((time) => time <= curve.x[index])); // means over parts of the time
-    const expected = late.map((index) => theory.y[then(index)]).filter(Number.isFinite);
+    const theory = theories[Math.min(place, theories.length - 1)], { x, y } = curve.whole ?? curve;
+    const late = x.map((time, index) => index).filter((index) => x[index] >= since && Number.isFinite(y[index]));
+    const expected = late.map((index) => theory.y[index]).filter(Number.isFinite);
     if (late.length < 2 * BLOCKS || expected.length < late.length) return [];
-    const [mean, error] = meanAndError(late.map((index) => curve.y[index]));
+    const [mean, error] = meanAndError(late.map((index) => y[index]));
     if (!(error > 0)) return [];
     const told = expected.reduce((sum, value) => sum + value, 0) / expected.length;
     const known = figure(told, Math.max(3, Math.ceil(Math.log10(Math.abs(told) / error)) + 1));
