@@ -208,7 +208,8 @@ def _without_molecules(box: LabBox) -> LabBox:
 def _layout(arrays: Any) -> Layout:
     """Return the layout of the cells before molecules are placed, with memory for other cells."""
     old, modes = arrays.layout, arrays.modes
-    shape, column = old.shape.copy(), old.column if modes.gravity and modes.rows else 0
+    shape = old.shape.copy()
+    column: Any = old.column if modes.gravity and modes.rows else 0
     shape[PLACES] = FEWEST if modes.rows else ROW - 1
     numbers = shape[NUMBER : NUMBER + 3]
     most = max(*numbers[:2], column.count.size) if column else int(_SPARE * max(numbers))

@@ -23,7 +23,7 @@ COMPILED = not int(os.environ.get("NUMBA_DISABLE_JIT") or 0)
 class Kernel:
     """A function of the engine that is compiled when Python or another kernel first calls it.
 
-    All other attributes (``stats``, ``signatures``) are those of the function that numba compiled.
+    All other attributes are those of the function that other kernels call.
 
     Parameters
     ----------
@@ -64,6 +64,11 @@ class Kernel:
         return self._for_python() if self._for_python else self.compiled
 
     @property
+    def stats(self) -> Any:
+        """How often the machine code that Python calls was found on disk."""
+        return self._run.stats
+
+    @property
     def _numba_type_(self) -> Any:
         """The type that numba sees where the code of another kernel names this one."""
         from atmosbox.engine.core import compiler
@@ -77,7 +82,7 @@ class Kernel:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # copy and pickle look for special methods, which numba's object need not have
             raise AttributeError(name)
-        return getattr(self._run, name)
+        return getattr(self.compiled, name)
 
 
 def kernel(

@@ -263,8 +263,10 @@ class ParcelSet(Parcel):
         """Return the times of the box, the energy at its start and its liquid."""
         driver = self._driver
         turn = math.inf if driver is None or self._ascends else (int(self._turns[0]) + 1) * driver.interval
-        numbers = (np.array([each]) for each in (turn, self._start_energy))
-        return Book(np.array([self._now]), np.array([self._epoch_length]), self._clocks, *numbers, self._moisture)
+        return Book(
+            np.array([self._now]), np.array([self._epoch_length]), self._clocks, np.array([turn]),
+            np.array([self._start_energy]), self._moisture,
+        )  # fmt: skip
 
     def _gas(self) -> Gas:
         """Return all data of the kernels."""
