@@ -176,7 +176,7 @@ class ParcelSet(Parcel):
         if until < self.time:
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         while True:
-            turn = float(self._book().turn[0])
+            turn = self._next_turn()
             self._pass_until(min(until, turn), watch)
             if until < turn:
                 break
@@ -259,12 +259,15 @@ class ParcelSet(Parcel):
         heights = float(self._layout.filled[0]), float(self._lowest_ceiling)
         return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
 
+    def _next_turn(self) -> float:
+        """Return when Python sets the velocity of the piston next [time], ``inf`` if it never does."""
+        driver = self._driver
+        return math.inf if driver is None or self._ascends else (int(self._turns[0]) + 1) * driver.interval
+
     def _book(self) -> Book:
         """Return the times of the box, the energy at its start and its liquid."""
-        driver = self._driver
-        turn = math.inf if driver is None or self._ascends else (int(self._turns[0]) + 1) * driver.interval
         return Book(
-            np.array([self._now]), np.array([self._epoch_length]), self._clocks, np.array([turn]),
+            np.array([self._now]), np.array([self._epoch_length]), self._clocks, np.array([self._next_turn()]),
             np.array([self._start_energy]), self._moisture,
         )  # fmt: skip
 
