@@ -6,6 +6,7 @@ imports it, is imported when the first kernel is called. `kernel_cache` tells wh
 
 import functools
 import os
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +19,32 @@ POSITIVE = (1 << 40) - 1
 
 COMPILED = not int(os.environ.get("NUMBA_DISABLE_JIT") or 0)
 """Whether kernels are compiled (they are not under ``NUMBA_DISABLE_JIT=1``, which the coverage run uses)."""
+
+
+class _Quiet(threading.local):
+    """Whether numpy gives no warnings now, as compiled code gives none."""
+
+    now = False
+
+
+_QUIET = _Quiet()
+
+
+def _quietly(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that numpy runs without warnings; what it calls need not switch them off again."""
+
+    @functools.wraps(function)
+    def run(*arguments: Any) -> Any:
+        if _QUIET.now:
+            return function(*arguments)
+        _QUIET.now = True
+        try:
+            with np.errstate(all="ignore"):
+                return function(*arguments)
+        finally:
+            _QUIET.now = False
+
+    return run
 
 
 class Kernel:
@@ -60,7 +87,7 @@ class Kernel:
     def _run(self) -> Any:
         """The function that Python calls."""
         if self._plain:
-            return np.errstate(all="ignore")(self.py_func)
+            return _quietly(self.py_func)
         return self._for_python() if self._for_python else self.compiled
 
     @property
@@ -77,7 +104,7 @@ class Kernel:
 
     def __call__(self, *arguments: Any) -> Any:
         """Run it."""
-        return self._run(*arguments)
+        return self.py_func(*arguments) if self._plain and _QUIET.now else self._run(*arguments)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # copy and pickle look for special methods, which numba's object need not have
@@ -123,7 +150,7 @@ def kernel(
     if function is None:
         return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel, plain=plain)
     if not COMPILED:
-        return np.errstate(all="ignore")(function)  # compiled code gives no warnings either
+        return _quietly(function)
 
     def compiled(**kind: bool) -> Any:
         from atmosbox.engine.core import compiler

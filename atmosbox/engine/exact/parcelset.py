@@ -48,6 +48,7 @@ from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 __all__ = ["Arrays", "ParcelSet"]
 
 _CHUNK = 200_000
+_NO_CLOCKS = np.full(1, math.inf)
 _OVERLAP = 1e-9
 
 
@@ -221,7 +222,7 @@ class ParcelSet(Parcel):
         left, status = _CHUNK, Passed.BUSY
         while status != Passed.DONE:
             book = self._book()
-            given = self._gas(), next(iter(self._ascent()), 0), book, self._layout, min(until, crushed), left
+            given = self._data(), next(iter(self._ascent()), 0), book, self._layout, min(until, crushed), left
             status, done = self._pass_time(*given)
             self._now = float(book.now[0])
             left -= done
@@ -271,21 +272,21 @@ class ParcelSet(Parcel):
             np.array([self._start_energy]), self._moisture,
         )  # fmt: skip
 
+    def _data(self) -> Gas:
+        """Return all data of the kernels, with the memory of the cells."""
+        return Gas(
+            self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls, self._tallies
+        )
+
     def _gas(self) -> Gas:
-        """Return all data of the kernels."""
-        made: Gas = as_laid_out(
-            Gas(
-                self._molecules, self._events, self._kinds, self._cells,
-                self._calendar, self._box, self._walls, self._tallies,
-            ),
-            self._layout, self._modes,
-        )  # fmt: skip
+        """Return all data of the kernels, with the present cells."""
+        made: Gas = as_laid_out(self._data(), self._layout, self._modes)
         return made
 
     @property
     def _clocks(self) -> Array:
         """The times of events that belong to no molecule: here there are none."""
-        return np.full(1, math.inf)
+        return _NO_CLOCKS
 
     @property
     def _moisture(self) -> Any:
