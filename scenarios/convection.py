@@ -15,7 +15,7 @@ difference of temperature with more gravity: it stays at rest).
 
 Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, one cell deep,
 that may rotate. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water, radiation, the
-rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km, because a box only some
+rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km, because a box only about a
 hundred molecules high is so viscous that air under a real lapse rate would stay at rest in it.
 """
 

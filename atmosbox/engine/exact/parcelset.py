@@ -275,8 +275,9 @@ class ParcelSet(Parcel):
     def _data(self) -> Gas:
         """Return all data of the kernels, with the memory of the cells."""
         return Gas(
-            self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls, self._tallies
-        )
+            self._molecules, self._events, self._kinds, self._cells,
+            self._calendar, self._box, self._walls, self._tallies,
+        )  # fmt: skip
 
     def _gas(self) -> Gas:
         """Return all data of the kernels, with the present cells."""

@@ -164,7 +164,7 @@ class AttractingParcelSet(ParcelSet):
         depth, i, j = self._overlap_at(gas, self._now)
         return float(depth), int(i), int(j)
 
-    def _gas(self) -> WellGas:  # type: ignore[override]
+    def _data(self) -> WellGas:  # type: ignore[override]
         made: WellGas = as_listed(
             WellGas(
                 self._molecules, self._events, self._kinds, self._calendar, self._box,
@@ -180,6 +180,8 @@ class AttractingParcelSet(ParcelSet):
         entry = np.zeros(2 * len(self._fields) * int(self._layout.stride[0]), np.uint32)
         entry[: old.size] = old
         self._vicinity = self._vicinity._replace(entry=entry)
+
+    _gas = _data  # type: ignore[assignment]
 
     @property
     def _clocks(self) -> Array:
