@@ -10,8 +10,6 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, ClassVar
 
-__all__ = ["CallableRoom"]
-
 
 class CallableRoom(ModuleType):
     """A package that can be called: ``atmosbox.plot(run)`` calls `atmosbox.interface.plot`.

@@ -1,5 +1,3 @@
 """The version of atmosbox, written once: the build, the files of runs and the command line read it from here."""
 
-__all__ = ["__version__"]
-
 __version__ = "0.2.0"

@@ -46,8 +46,8 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import gravity, wall_temperature
-from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import average_beside
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:

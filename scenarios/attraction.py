@@ -63,8 +63,8 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.knob import Knob
 from atmosbox.scene.panels import over_time
-from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import BlockAverage, overlapping_average
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 if TYPE_CHECKING:

@@ -56,8 +56,8 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import gravity, wall_temperature
-from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import BlockAverage, growth_per_step, overlapping_average
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:

@@ -40,7 +40,7 @@ from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE, CHANCE_LIMIT
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.scene.panels import over_time
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:

@@ -34,7 +34,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import ROUNDING
 from atmosbox.scene.panels import over_time
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.units import rounded
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -46,7 +46,7 @@ from atmosbox.scene.knob import open_pool, warmed_walls
 from atmosbox.scene.moisture import water
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.piston import moist_parcel, parcel_facts
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:

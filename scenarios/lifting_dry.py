@@ -39,7 +39,7 @@ from atmosbox.scene.ascent import atmosphere_panel, refuse_descent
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import altitude
 from atmosbox.scene.piston import CLOSING, free_time_of, parcel_facts, size_of_parcel
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:

@@ -44,7 +44,7 @@ from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.moisture import WARM, moist_air, water
 from atmosbox.scene.panels import over_time
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:

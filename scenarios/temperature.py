@@ -22,8 +22,8 @@ from atmosbox.scene import Air, EngineChoice, Headline, Scale, SceneSettings, Se
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.panels import Line, Panel, over_time
-from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import overlapping_average
+from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:

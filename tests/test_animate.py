@@ -15,7 +15,7 @@ from atmosbox.file import netcdf as output
 from atmosbox.file.molecules import molecules
 from atmosbox.film.film_file import sized
 from atmosbox.film.film_sheet import Sheet
-from atmosbox.film.running import Running
+from atmosbox.film.graph import Running
 from atmosbox.plot.box_picture import project
 from atmosbox.plot.theme import FIELD_COLOURS, find, style
 from tests.conftest import SMALL_RUNS

@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 import atmosbox
 from atmosbox.cli import app
 from atmosbox.file import netcdf as output
+from atmosbox.plot import compare as comparison
 from atmosbox.plot.compare import compared, naming
-from atmosbox.plot.compare import figure as comparison
 
 SMALL = {"molecules": 100, "ascent": 20.0}
 

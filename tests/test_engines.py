@@ -7,7 +7,7 @@ import pytest
 
 import atmosbox
 from atmosbox.engine import CoarseStepWarning
-from atmosbox.engine.core.energy_budget import GIVEN, STORES
+from atmosbox.engine.core.account import GIVEN, STORES
 from atmosbox.errors import SettingError, UnknownSettingError
 from atmosbox.scene.engines import FEW, choose, used
 from atmosbox.simulation import runner

@@ -20,12 +20,12 @@ import atmosbox as ab
 from atmosbox import theory
 from atmosbox.engine import FollowPressure, ParcelSet, Piston, Specular
 from atmosbox.file.export import tables
+from atmosbox.lab.box import lab_box
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.kernel_table import kernels
-from atmosbox.lab.lab_box import lab_box
-from atmosbox.lab.lab_plan import lab_plan
+from atmosbox.lab.plan import lab_plan
 from atmosbox.plot.curve import curve
-from atmosbox.scene.ascent.dissipation import _ROTATION, _SHEAR
+from atmosbox.scene.ascent.random_walk import _ROTATION, _SHEAR
 from atmosbox.scene.instruments import Air, Flow, Layers, Mixing, Molecules
 from atmosbox.scene.instruments.lifted_air import Environment, Lift
 from atmosbox.scene.panels import Line, Panel

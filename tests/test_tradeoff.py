@@ -21,7 +21,7 @@ from atmosbox.plot import save
 from atmosbox.plot.tradeoff_figure import recommended
 from atmosbox.scene.setup import Series
 from atmosbox.simulation.accuracy import choose
-from atmosbox.trade import repetition, timed_run
+from atmosbox.trade import timed_run
 from atmosbox.trade.tradeoff import Way, _summary, measure, ways_of
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -45,7 +45,7 @@ def compiled():
 @pytest.fixture(scope="module")
 def found():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(repetition, "MOST_RUNS", 4)  # this ends it, on a computer that is not busy
+        patch.setattr(timed_run, "MOST_RUNS", 4)  # this ends it, on a computer that is not busy
         return measure("lifting-dry", ways=ways_of(QUICK, {}), budget=60.0)
 
 
@@ -53,7 +53,7 @@ def found():
 def runs(monkeypatch):
     """Let each way run twice, however long the budget; return the runs that were made, as way and seed."""
     made, once = [], timed_run.run
-    monkeypatch.setattr(repetition, "MOST_RUNS", 2)
+    monkeypatch.setattr(timed_run, "MOST_RUNS", 2)
     monkeypatch.setattr(timed_run, "run", lambda *run: made.append((run[1].label, run[2])) or once(*run))
     return made
 
@@ -106,7 +106,7 @@ class Clock:
     def __init__(self, budget, building, running):
         self.now, self.log, self.building, self.running = 0.0, [], building, running
         self.results = [[] for _ in running]
-        self.said = repetition.repeat(budget, self.results, self.run, clock=lambda: self.now)
+        self.said = timed_run.repeat(budget, self.results, self.run, clock=lambda: self.now)
 
     def run(self, k, watch):
         self.log.append(k)
@@ -135,7 +135,7 @@ def test_the_budget_is_kept_and_what_fits_is_run():
 def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(scenarios.load("lifting-dry"), "ladder", QUICK, raising=False)
-    monkeypatch.setattr(repetition, "MOST_RUNS", 2)
+    monkeypatch.setattr(timed_run, "MOST_RUNS", 2)
     done = CliRunner().invoke(app, ["tradeoff", "lifting-dry", "--budget", "60s", "--json"])
     assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)
@@ -147,7 +147,7 @@ KILLED = """
 import os
 from pathlib import Path
 from atmosbox.file.checkpoint import Checkpoint
-from atmosbox.trade import repetition, timed_run
+from atmosbox.trade import timed_run
 from atmosbox.trade.tradeoff import measure
 from tests.test_tradeoff import DISCS
 
@@ -158,7 +158,7 @@ def run(*words):
     return once(*words)
 
 made, once, timed_run.run = [], timed_run.run, run
-repetition.MOST_RUNS = 2
+timed_run.MOST_RUNS = 2
 Checkpoint.__call__ = lambda self, make: self.save(make())  # after every run, and not only after two seconds
 measure("elastic-collisions", ways=DISCS, out=Path("x.nc"), budget=600.0)
 """

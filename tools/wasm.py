@@ -27,10 +27,10 @@ import numba
 
 from atmosbox.engine.core.compiler import LlvmText
 from atmosbox.engine.core.state import Modes
+from atmosbox.lab.box import lab_box
 from atmosbox.lab.kernels.kernel_table import kernels
-from atmosbox.lab.lab_box import lab_box
+from atmosbox.lab.memory_image import arguments
 from atmosbox.lab.wasm_module import BESIDE, FOLDER, SCENES, source_stamp, stamp_of
-from atmosbox.lab.work import arguments
 from atmosbox.simulation.preparation import prepare
 
 TRIPLE = "wasm32-unknown-unknown"

@@ -13,8 +13,6 @@ from typer.core import TyperGroup
 from atmosbox.cli.terminal import guarded, say
 from atmosbox.cli.usage import Command, OneSentence, UsageError, command_refusal
 
-__all__ = ["app", "command", "typed"]
-
 P = ParamSpec("P")
 R = TypeVar("R")
 

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, Json, Theme, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import beside, chosen
+from atmosbox.cli.option import Force, Json, Theme, Verbose, beside, chosen, out_option, quiet_option
 from atmosbox.cli.terminal import say, say_json, tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.report import comparison_lines

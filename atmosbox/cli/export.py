@@ -8,8 +8,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, RunFile, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import beside, chosen
+from atmosbox.cli.option import Force, RunFile, Verbose, beside, chosen, out_option, quiet_option
 from atmosbox.cli.terminal import say
 
 Exported = Literal["extxyz", "csv"]

@@ -1,18 +1,29 @@
-"""The command ``lab``: an HTML page in which a scene runs, without a server and without Python."""
+"""The command ``lab``: an HTML page in which a scene runs, or a folder with the pages of all scenes and an index."""
 
 from __future__ import annotations
 
+import base64
+import html
+import io
+import json
+from collections.abc import Callable, Collection
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atmosbox import scenarios
 from atmosbox.cli import option
 from atmosbox.cli.application import command
-from atmosbox.cli.output_name import chosen, for_scene
+from atmosbox.cli.option import chosen, for_scene
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
+from atmosbox.errors import FileError
 from atmosbox.text.progress import progress
+
+if TYPE_CHECKING:
+    from atmosbox.simulation.preparation import Prepared
 
 
 @command(
@@ -48,7 +59,7 @@ def lab(
     values as fit into it. In the page that live opens, all settings can be changed.
     """
     if every:
-        from atmosbox.cli.lab_folder import save_all
+        from atmosbox.cli.lab import save_all
         from atmosbox.simulation.link import check_nothing_changes
 
         given = {"scene": scene, "--set": values, "--config": config, "--from": source, "--seed": seed}
@@ -71,3 +82,103 @@ def lab(
         with prints_to_stderr():
             written = save_lab(prepared, path, theme=theme, language=language, force=force, progress=show)
     say(str(written))
+
+
+_FRAMES = 12  # after which the still picture is drawn
+_SIZE = (4.0, 3.0)  # of a picture [inches]
+_PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>An atmosphere in a box</title>
+<style>
+body { margin: 0 auto; max-width: 75rem; padding: 1rem; font: 1rem/1.45 system-ui, sans-serif; }
+body { color: #1a1f26; background: #f4f6f9; }
+main { display: grid; grid-template-columns: repeat(auto-fill, minmax(17rem, 1fr)); gap: 1rem; }
+a { display: block; padding: 0.75rem; color: inherit; text-decoration: none; background: #fff; }
+a { border: 1px solid #d8dee6; border-radius: 0.75rem; }
+a:hover, a:focus-visible { border-color: #0072b2; }
+img { display: block; width: 100%; aspect-ratio: 4 / 3; object-fit: contain; }
+h2 { margin: 0.5rem 0 0.25rem; font-size: 1.125rem; color: #0072b2; }
+p { margin: 0; }
+h1 + p { margin-bottom: 1rem; }
+small { color: #566270; }
+</style>
+</head>
+<body>
+<h1>An atmosphere in a box</h1>
+<p>Molecules collide, and meteorology emerges. The scenes stand in the order of teaching; each runs in this browser.</p>
+<main>
+@@SCENES@@
+</main>
+<p><small>@@BY@@</small></p>
+</body>
+</html>
+"""
+
+
+def save_all(
+    folder: Path,
+    *,
+    theme: str,
+    language: str,
+    force: bool,
+    progress: Callable[[float, str], None] = lambda share, name: None,
+    scenes: Collection[str] = (),
+) -> list[Path]:
+    """Write the pages of some scenes, or of all, and ``index.html``; return the paths, index first."""
+    from atmosbox.file.output_path import check_writable, write_whole
+    from atmosbox.lab import save_lab
+    from atmosbox.lab.wasm_module import SCENES
+    from atmosbox.simulation.preparation import prepare
+    from atmosbox.version import __version__
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{folder} cannot be made ({error.strerror}): give another folder.") from error
+    wanted = set(SCENES) & set(scenes or SCENES)
+    found = {name: each for name, each in scenarios.summaries().items() if name in wanted}
+    pages = {name: check_writable(folder / f"{name}-lab.html", force) for name in found}
+    index = check_writable(folder / "index.html", force)
+    cards = []
+    for number, (name, told) in enumerate(found.items()):
+        progress(number / len(found), name)
+        prepared = prepare(name, SCENES[name], engine="exact")
+        save_lab(prepared, pages[name], theme=theme, language=language, force=force)
+        title = html.escape(str(getattr(prepared.module, "title", name)))
+        about = " · ".join(filter(None, [told.level, f"{told.minutes} minutes" if told.minutes else ""]))
+        cards.append(
+            f'<a href="{pages[name].name}"><img alt="" src="data:image/png;base64,{_still(prepared)}">'
+            f"<h2>{title}</h2><p>{html.escape(told.sentence)}</p><small>{html.escape(about)}</small></a>"
+        )
+    text = _PAGE.replace("@@SCENES@@", "\n".join(cards)).replace("@@BY@@", f"Made by atmosbox {__version__}.")
+    write_whole(index, text.encode("utf-8"))
+    return [index, *pages.values()]
+
+
+def _still(prepared: Prepared) -> str:
+    """Return the picture of a box after a few frames: PNG, in base64."""
+    from matplotlib.figure import Figure
+
+    from atmosbox.file.molecules import molecules
+    from atmosbox.plot.box_picture import box_picture
+    from atmosbox.plot.theme import find, style
+    from atmosbox.simulation.preparation import build
+    from atmosbox.simulation.recording import Recording
+
+    prepared = replace(prepared, save_molecules=True)
+    setup = build(prepared)
+    recording = Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
+    for _ in range(min(_FRAMES, setup.frames)):
+        recording.advance(lambda now: None)
+    run, _ = recording.dataset("partial", judged=False)
+    look = find("notes")
+    with style(look):
+        figure = Figure(_SIZE, dpi=120)
+        picture = box_picture(figure.add_axes((0.04, 0.04, 0.92, 0.92)), run, molecules(run), look)
+        picture.show(recording.frames - 1)
+        content = io.BytesIO()
+        figure.savefig(content, format="png", metadata={"Software": None})
+    return base64.b64encode(content.getvalue()).decode("ascii")

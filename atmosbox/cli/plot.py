@@ -7,8 +7,7 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, Format, RunFile, Theme, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import beside, chosen
+from atmosbox.cli.option import Force, Format, RunFile, Theme, Verbose, beside, chosen, out_option, quiet_option
 from atmosbox.cli.terminal import say
 
 

@@ -8,8 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Engine, Force, SceneName, Seed, ValuesOfAll, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import chosen, for_scene
+from atmosbox.cli.option import (
+    Engine,
+    Force,
+    SceneName,
+    Seed,
+    ValuesOfAll,
+    Verbose,
+    chosen,
+    for_scene,
+    out_option,
+    quiet_option,
+)
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import prints_to_stderr, say, tell
 from atmosbox.text.progress import progress
@@ -77,7 +87,7 @@ def sheet(
 def _pages(made: Worksheet, folder: Path, force: bool) -> list[Path]:
     """Write the page of each run beside the sheet, unless it is there; all paths are checked before one is written."""
     from atmosbox.file.output_path import check_writable, write_whole
-    from atmosbox.lab.lab_file import lab_text
+    from atmosbox.lab.page_file import lab_text
 
     pages = {folder / run.page: lab_text(run.prepared, others=False).encode("utf-8") for run in made.runs}
     # the page of the same run is the same file each time, so a second sheet uses the one that is there

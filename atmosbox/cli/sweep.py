@@ -10,7 +10,7 @@ import typer
 
 from atmosbox.cli import option
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
+from atmosbox.cli.option import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import EngineError, PhysicsError
 from atmosbox.text.progress import progress

@@ -9,8 +9,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
+from atmosbox.cli.option import (
+    Force,
+    Json,
+    SceneName,
+    ValuesOfAll,
+    Verbose,
+    chosen,
+    for_scene,
+    netcdf_name,
+    out_option,
+    quiet_option,
+)
 from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
 from atmosbox.errors import Option
 from atmosbox.text.progress import progress

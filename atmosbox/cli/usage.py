@@ -15,8 +15,6 @@ from typer.core import TyperCommand
 from atmosbox.errors import AtmosboxError, shown
 from atmosbox.text.stream import tell
 
-__all__ = ["Command", "OneSentence", "UsageError", "command_refusal"]
-
 UsageError: Any = typer.BadParameter.__base__  # of the click inside typer, which has no public name
 
 _ASSIGNMENT = re.compile(r"[A-Za-z][\w-]*=.*", re.DOTALL)

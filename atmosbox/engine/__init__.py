@@ -20,8 +20,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from atmosbox.engine.core.course import Course
-    from atmosbox.engine.core.lift import FollowPressure
+    from atmosbox.engine.core.lift import Course, FollowPressure
     from atmosbox.engine.core.packing import packing_fraction
     from atmosbox.engine.core.parcel import Driver, Parcel, Snapshot
     from atmosbox.engine.core.random import RandomNumbers
@@ -30,8 +29,8 @@ if TYPE_CHECKING:
     from atmosbox.engine.core.walls import HeatBath, Periodic, Piston, Specular, Wall
     from atmosbox.engine.exact.parcelset import ParcelSet
     from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
-    from atmosbox.engine.start.clearing import clear_of_drops
     from atmosbox.engine.start.lattice import lattice_positions
+    from atmosbox.engine.start.overlap import clear_of_drops
     from atmosbox.engine.start.scatter import random_positions
     from atmosbox.engine.start.start import EqualSpeeds, Maxwell, Placed, Rotating, Scattered, Start
     from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies, two_halves

@@ -21,8 +21,6 @@ from atmosbox.file.output_path import AnyPath, check_writable, clear, part_path,
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Checkpoint"]
-
 SHARE = 0.02  # largest share of a run's time that its checkpoints may take
 
 

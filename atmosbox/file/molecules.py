@@ -13,8 +13,6 @@ from atmosbox.file.provenance import parameters
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Molecules", "molecules"]
-
 _MOLECULES = {
     "position": "molecule_position",
     "speed": "molecule_speed",

@@ -13,8 +13,6 @@ from typing import Any
 from atmosbox.errors import FileError, Option
 from atmosbox.file.provenance import moment
 
-__all__ = ["ANOTHER_NAME", "ELSEWHERE", "BusyError", "OutputLock", "alive", "hold", "host"]
-
 ELSEWHERE = ("give another place with ", Option("out"))
 """The remedy where a file cannot be written."""
 ANOTHER_NAME = ("name another file with ", Option("out"))

@@ -19,20 +19,6 @@ from atmosbox.errors import DiskFullError, FileError, Option, SettingError, show
 from atmosbox.file.output_lock import ANOTHER_NAME, ELSEWHERE, alive, host
 from atmosbox.file.provenance import moment
 
-__all__ = [
-    "AnyPath",
-    "check_writable",
-    "clear",
-    "named",
-    "part_path",
-    "run_is_there",
-    "unused",
-    "whole_file",
-    "whole_path",
-    "write_failure",
-    "write_whole",
-]
-
 AnyPath: TypeAlias = str | os.PathLike[str]
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)

@@ -15,8 +15,6 @@ from atmosbox.version import __version__
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FORMAT", "global_attributes", "history_line", "moment", "parameters"]
-
 FORMAT = 1
 """The version of the layout of the files, in the attribute ``atmosbox_format``."""
 

@@ -17,8 +17,6 @@ from atmosbox.file.variables import known
 if TYPE_CHECKING:
     import netCDF4
 
-__all__ = ["check_valid", "free_memory", "has_endless_heap"]
-
 DENSEST = 1100
 """Largest number of bytes in memory for one byte of a file: deflate packs at most 1032 into one."""
 

@@ -26,9 +26,6 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["SUFFIXES", "VARIABLES", "Variable", "derived", "known", "variable"]
-
-
 CHUNK_FRAMES = 100  # largest number of frames in a block of data that is compressed as one
 CHUNK_VALUES = 1_000_000  # largest number of values in a block
 

@@ -9,7 +9,6 @@ picture) and `film_file` (GIF and MP4).
 """
 
 from atmosbox.film.film_file import FORMATS, save
-from atmosbox.film.film_sheet import Sheet
-from atmosbox.film.pace import Pace, pace
+from atmosbox.film.film_sheet import Pace, Sheet, pace
 
 __all__ = ["FORMATS", "Pace", "Sheet", "pace", "save"]

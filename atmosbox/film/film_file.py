@@ -16,15 +16,12 @@ from PIL import Image
 from atmosbox.errors import FileError, Option, SettingError
 from atmosbox.file.molecules import molecules
 from atmosbox.file.output_path import named, whole_file
-from atmosbox.film.film_sheet import Sheet
-from atmosbox.film.pace import Pace, pace
+from atmosbox.film.film_sheet import Pace, Sheet, pace
 from atmosbox.plot.run_figure import panels_of
 from atmosbox.plot.theme import Theme, find, style
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = ["FORMATS", "save"]
 
 FORMATS = ("gif", "mp4")
 _SIZES = {"gif": {"notes": (800, 450), "slides": (960, 540)}, "mp4": {"notes": (1280, 720), "slides": (1280, 720)}}

@@ -5,8 +5,7 @@ its results first), `measurement` (`run`, `resume`, `open`, `sweep`), `drawing` 
 (`scenes`). Large libraries are imported when a function needs them.
 """
 
-from atmosbox.interface.catalogue import Printed, scenes
 from atmosbox.interface.drawing import Comparison, InlinePage, compare, plot, show
-from atmosbox.interface.measurement import open, resume, run, sweep
+from atmosbox.interface.measurement import Printed, open, resume, run, scenes, sweep
 
 __all__ = ["Comparison", "InlinePage", "Printed", "compare", "open", "plot", "resume", "run", "scenes", "show", "sweep"]

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-__all__ = ["Comparison", "InlinePage", "compare", "plot", "show"]
-
-
 _DPI = 110  # dots per inch of a picture in a notebook
 _WIDTH = 120
 
@@ -163,8 +160,7 @@ def compare(
     >>> print(ab.compare(one, other).table.splitlines()[0])
     elastic-collisions: seed 1 / 2
     """
-    from atmosbox.plot.compare import compared, naming
-    from atmosbox.plot.compare.figure import MOST, drawn, save
+    from atmosbox.plot.compare import MOST, compared, drawn, naming, save
     from atmosbox.plot.theme import find
     from atmosbox.text.report import comparison_lines
 
@@ -273,7 +269,7 @@ def show(
     Traceback (most recent call last):
     atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("temperature", save_molecules=True).
     """
-    from atmosbox.page.page_file import page_text
+    from atmosbox.page.saved_run import page_text
 
     if not 1 <= len(runs) <= 2:
         raise SettingError("runs", None, f"are {len(runs)}", "give one run, or two to stand side by side")

@@ -8,8 +8,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
-__all__ = ["in_notebook", "preformatted", "progress_bar"]
-
 Show = Callable[[float, str], None]
 
 

@@ -7,8 +7,6 @@ import xarray as xr
 
 from atmosbox.interface.notebook import preformatted
 
-__all__ = ["RunDataset", "as_run"]
-
 _WIDTH = 110
 
 

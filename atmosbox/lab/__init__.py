@@ -7,6 +7,6 @@ memory) and `wasm_module` (the modules, which ``tools/wasm.py`` makes); `theory_
 page), `lab_start` (other numbers of molecules), `lab_file` (the HTML file).
 """
 
-from atmosbox.lab.lab_file import save_lab
+from atmosbox.lab.page_file import save_lab
 
 __all__ = ["save_lab"]

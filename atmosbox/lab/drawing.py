@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.lab.lab_stage import plain
-from atmosbox.page.page_panel import declared
+from atmosbox.lab.stage import plain
+from atmosbox.page.panel import declared
 from atmosbox.scene.conversion import to_si
 
 if TYPE_CHECKING:
     from atmosbox.scene.setup import Setup
-
-__all__ = ["drawing"]
 
 _HANDLES = 5
 _TIME = "elapsed_time"

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox import theory as law
+from atmosbox.lab.box import LabBox
 from atmosbox.lab.kernels.hygrometer import WaterReading
-from atmosbox.lab.lab_box import LabBox
-from atmosbox.lab.lab_stage import plain
-from atmosbox.lab.moist_lab_box import bins_of, finer_at_kinks, theory_at
+from atmosbox.lab.moist_box import bins_of, finer_at_kinks, theory_at
+from atmosbox.lab.stage import plain
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared
@@ -22,16 +22,6 @@ if TYPE_CHECKING:
 
     from atmosbox.scene.knob import Knob
     from atmosbox.scene.setup import Setup
-
-__all__ = [
-    "DROP_STATE",
-    "WET_STATE",
-    "fixed_axes",
-    "leaving_energies",
-    "moist_tables",
-    "planned_alone",
-    "water_readings",
-]
 
 WET_STATE = tuple(
     f"book.moisture.reservoir.{name}" for name in ("energy", "count", "clock", "bound", "absent", "top", "spectrum")

@@ -20,15 +20,13 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from atmosbox.errors import AtmosboxError, Command, Given, Option, Setting, SettingError, on_command_line
-from atmosbox.lab.lab_file import lab_data
-from atmosbox.lab.lab_start import served_start
+from atmosbox.lab.page_file import lab_data
+from atmosbox.lab.starts import served_start
 from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.page import lab_page
 from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.spelling import field_name
 from atmosbox.simulation.preparation import Prepared
-
-__all__ = ["HOST", "PORT", "Server", "allowed", "ended"]
 
 HOST = "127.0.0.1"
 PORT = 8642

@@ -27,8 +27,6 @@ from atmosbox.lab.kernels.starting import (
     can_start,
 )
 
-__all__ = ["first_baths", "is_drawn", "start_of"]
-
 _DRAWN = {"position": PLACES, "velocity": VELOCITIES, "rotational_energy": SPINS}
 _NUMBERED = {"as placed": AS_PLACED, "at random": AT_RANDOM, "along x": ALONG_X}
 

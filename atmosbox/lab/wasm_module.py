@@ -11,8 +11,6 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import code_of
 from atmosbox.errors import Command, EngineError, Option
 
-__all__ = ["BESIDE", "FOLDER", "SCENES", "elsewhere", "module_bytes", "module_name", "source_stamp", "stamp_of"]
-
 FOLDER = Path(__file__).parent / "modules"
 SCENES: dict[str, dict[str, Any]] = {
     "temperature": {},

@@ -12,8 +12,7 @@ scripts, ``vendor`` the two libraries that draw the page, and the one that makes
 """
 
 from atmosbox.page.document import lab_page, view_page
-from atmosbox.page.page_box import Box
-from atmosbox.page.page_file import save
-from atmosbox.page.page_stage import NEIGHBOURS, ROUND, Stage, round_up, stage
+from atmosbox.page.saved_run import save
+from atmosbox.page.stage import NEIGHBOURS, ROUND, Box, Stage, round_up, stage
 
 __all__ = ["NEIGHBOURS", "ROUND", "Box", "Stage", "lab_page", "round_up", "save", "stage", "view_page"]

@@ -10,8 +10,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-__all__ = ["LANGUAGES", "MODULES", "THEMES", "lab_page", "view_page", "words"]
-
 THEMES = ("auto", "light", "dark")
 
 LANGUAGES = ("auto", "en", "de", "es")

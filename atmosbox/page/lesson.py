@@ -40,8 +40,6 @@ from atmosbox.errors import ConfigError, FileError
 from atmosbox.file.variables import variable
 from atmosbox.scene.conversion import converted, from_si, number_and_unit
 
-__all__ = ["Lesson", "Preset", "lesson_of"]
-
 SUFFIX = ".live.toml"
 _KNOWN = {
     "preset": {"title", "set"},

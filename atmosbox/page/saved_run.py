@@ -1,28 +1,29 @@
-"""From the dataset of a run to the data of its page: the stage, the frames, the values of the graphs, the texts."""
+"""From the dataset of a run to its page: the data, and the file, which appears only when it is complete."""
 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, SettingError
 from atmosbox.file.molecules import Molecules, molecules
+from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.file.provenance import parameters
-from atmosbox.page.page_box import Box, page_box
-from atmosbox.page.page_panel import Meaning, declared, names
-from atmosbox.page.page_stage import NEIGHBOURS, Stage, stage
-from atmosbox.page.thinning import share
+from atmosbox.page.document import LANGUAGES, THEMES, view_page
+from atmosbox.page.frame import pack
+from atmosbox.page.panel import Meaning, declared, names
+from atmosbox.page.stage import NEIGHBOURS, Box, Stage, page_box, share, stage
 from atmosbox.page.word import changed, footer_of, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = ["Page", "pages"]
 
 _FASTEST = 99.9  # percentile of the speeds that the colour scale must reach
 _FIGURES, _TIME_FIGURES = 6, 9
@@ -201,3 +202,87 @@ def _fastest(speed: NDArray[np.floating]) -> float:
     """Return a speed that only one molecule in a thousand exceeds [m/s]; 0 if no speed is known."""
     known = speed[np.isfinite(speed)]
     return float(np.percentile(known, _FASTEST)) if known.size else 0.0
+
+
+def save(
+    runs: Sequence[xr.Dataset],
+    path: str | os.PathLike[str],
+    *,
+    theme: str = "auto",
+    language: str = "auto",
+    force: bool = False,
+) -> Path:
+    """Write the page that shows a run, or two side by side.
+
+    Parameters
+    ----------
+    runs : sequence of xarray.Dataset
+        One run or two, with their molecules, as `atmosbox.file.netcdf.read` returns them.
+    path : str or path-like
+        The file; it should end in ``.html``.
+    theme : {"auto", "light", "dark"}
+        The colours of the page.
+    language : {"auto", "en", "de", "es"}
+        Language of the page; ``auto`` takes the first language of the reader's browser that the page has.
+    force : bool
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+
+    Raises
+    ------
+    FileError
+        If a run holds no molecules, or the file cannot be written.
+    SettingError
+        If the theme or the language is unknown.
+
+    Notes
+    -----
+    The page contains neither a date nor a random number: the same runs give the same bytes.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> save([xr.Dataset()], "page.html", theme="pink")
+    Traceback (most recent call last):
+    atmosbox.errors.SettingError: theme = pink is unknown: give auto, light or dark.
+    """
+    check_choice("theme", theme, THEMES)
+    check_choice("language", language, LANGUAGES)
+    target = check_writable(path, force, example="page.html")
+    write_whole(target, page_text(runs, theme=theme, language=language).encode("utf-8"))
+    return target
+
+
+def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto", language: str = "auto") -> str:
+    """Return the HTML of the page that `save` writes.
+
+    Raises
+    ------
+    FileError
+        If a run holds no molecules.
+    SettingError
+        If the theme or the language is unknown.
+    """
+    from atmosbox.page.saved_run import pages
+
+    check_choice("theme", theme, THEMES)
+    check_choice("language", language, LANGUAGES)
+    told = pages(runs)
+    records, frames = [page.record for page in told], [pack(page.frames) for page in told]
+    return view_page(records, frames, theme=theme, language=language)
+
+
+def check_choice(name: str, value: str, known: Sequence[str]) -> None:
+    """Refuse a theme or a language that does not exist.
+
+    Raises
+    ------
+    SettingError
+        If the value is not one of the known ones.
+    """
+    if value not in known:
+        raise SettingError(name, value, "is unknown", f"give {', '.join(known[:-1])} or {known[-1]}")

@@ -11,12 +11,10 @@ import numpy as np
 
 from atmosbox.file.molecules import Molecules
 from atmosbox.file.provenance import parameters
-from atmosbox.page.page_box import length_text
+from atmosbox.page.stage import length_text
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = ["card_of", "changed", "footer_of", "notes", "settings_of", "story_of"]
 
 _FAR = 0.15  # share of the box; if molecules fly farther between two frames, the page says so
 _NEAR = 0.03  # share of the box that molecules fly between two frames of a run that shows their collisions
@@ -254,7 +252,7 @@ def _phrase(value: object, unit: str) -> str:
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, int | float) and math.isfinite(value):
-        from atmosbox.plot.units import spelled
+        from atmosbox.plot.curve import spelled
 
         return f"{value:.6g} {spelled(unit)}".replace("-", "\u2212").rstrip()
     return str(value)

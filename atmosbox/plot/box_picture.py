@@ -16,9 +16,9 @@ from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from atmosbox.file.molecules import Molecules
+from atmosbox.plot.curve import spelled
 from atmosbox.plot.discs import DiscPicture, colour_scale
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, OKABE_ITO, PALE, Theme
-from atmosbox.plot.units import spelled
 from atmosbox.theory.constants import DRY_AIR
 
 Floats = NDArray[np.float64]

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from atmosbox.errors import FileError
-from atmosbox.plot.curve import read, unit_of
-from atmosbox.plot.units import convert, of_difference, power_of_ten, spelled
+from atmosbox.plot.curve import convert, of_difference, power_of_ten, read, spelled, unit_of
 from atmosbox.scene.panels import Panel
 
 

@@ -16,8 +16,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from atmosbox.file.molecules import Molecules, molecules
+from atmosbox.plot.curve import convert, spelled
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, Theme
-from atmosbox.plot.units import convert, spelled
 from atmosbox.scene.panels import Panel
 
 _FAST = 5.0

@@ -12,9 +12,9 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from atmosbox.plot.curve import convert, spelled
 from atmosbox.plot.layout import TextMeasure
 from atmosbox.plot.theme import DARK, Theme
-from atmosbox.plot.units import convert, spelled
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 _COLOURS = "inferno"  # dark is cold, light is warm, in print too

@@ -24,11 +24,11 @@ from matplotlib.text import Text
 from matplotlib.transforms import ScaledTranslation, offset_copy
 
 from atmosbox.plot.caption import Reading, axis_labels
+from atmosbox.plot.curve import labelled
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.skewt import fit_skewt
 from atmosbox.plot.theme import DARK, FAINT, Theme, style
 from atmosbox.plot.tick import put_ticks
-from atmosbox.plot.units import labelled
 from atmosbox.scene.panels import Panel
 
 _FIXED = "\u00a0"  # a space that no line breaks at

@@ -18,10 +18,9 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from atmosbox.plot.curve import Curve, curve, read
+from atmosbox.plot.curve import Curve, convert, curve, read
 from atmosbox.plot.draw import Curves, Entry
 from atmosbox.plot.theme import AREAS, DARK, FAINT, PALE, Theme
-from atmosbox.plot.units import convert
 from atmosbox.scene.panels import Panel
 
 Floats = NDArray[np.float64]

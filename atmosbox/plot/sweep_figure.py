@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from atmosbox.errors import FileError
 from atmosbox.plot.caption import stated
 from atmosbox.plot.coexistence_figure import coexistence, is_coexistence
+from atmosbox.plot.curve import convert, spelled
 from atmosbox.plot.run_figure import figure as figure_of_panels
 from atmosbox.plot.theme import DATA_COLOURS, find, style
-from atmosbox.plot.units import convert, spelled
 from atmosbox.scene.panels import Line, Panel, to_json
 
 MOST_PANELS = 4

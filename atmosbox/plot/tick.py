@@ -15,7 +15,7 @@ from matplotlib.ticker import (
     ScalarFormatter,
 )
 
-from atmosbox.plot.units import power_of_ten
+from atmosbox.plot.curve import power_of_ten
 
 # The mandatory levels of soundings [hPa], without 925, for which there is seldom room.
 _PRESSURE_LEVELS = (1000.0, 850.0, 700.0, 500.0, 400.0, 300.0, 250.0, 200.0, 150.0, 100.0, 70.0, 50.0, 30.0, 20.0, 10.0)

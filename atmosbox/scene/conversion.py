@@ -16,23 +16,6 @@ from typing import Any, NamedTuple
 
 from atmosbox.errors import UnitError, shown
 
-__all__ = [
-    "MEASURES",
-    "SIGNS",
-    "Unit",
-    "converted",
-    "declared_unit",
-    "from_si",
-    "known_unit",
-    "number_and_unit",
-    "phrase",
-    "power_of_ten",
-    "slashed",
-    "spelled",
-    "to_si",
-    "typed",
-]
-
 
 class Unit(NamedTuple):
     """A unit: value * up / down + offset is the value in the SI unit `si`."""

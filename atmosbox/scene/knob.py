@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.engine.core.course import interpolate
+from atmosbox.engine.core.lift import interpolate
 from atmosbox.scene.conversion import from_si, to_si
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.units import rounded
 
 if TYPE_CHECKING:
     from atmosbox.engine import FollowPressure, Parcel
     from atmosbox.scene.settings import SceneSettings
     from atmosbox.scene.units import Scale
-
-__all__ = ["Knob", "altitude", "gravity", "open_pool", "wall_temperature", "warmed_walls", "way"]
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,8 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine import Maxwell, Rotating, Substance
-from atmosbox.scene.rounding import rounded
-from atmosbox.scene.units import Scale
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import DRY_AIR, WATER
-
-__all__ = ["WARM", "MoistAir", "moist_air", "nuclei_heat_capacity", "vapour_molecules", "water"]
 
 Array = NDArray[np.float64]
 WARM = Maxwell(1.0, exact=True), Rotating(1.0, exact=True)

@@ -10,15 +10,12 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.engine import Piston, Scattered, Specular, Start
 from atmosbox.scene.moisture import WARM, moist_air
-from atmosbox.scene.rounding import rounded
-from atmosbox.scene.units import Scale
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import DRY_AIR
 
 if TYPE_CHECKING:
     from atmosbox.engine import FollowPressure, Liquid, Parcel
     from atmosbox.scene.engines import EngineChoice
-
-__all__ = ["CLOSING", "FLATNESS", "free_time_of", "moist_parcel", "parcel_facts", "size_of_parcel"]
 
 FLATNESS = 0.4
 """Height of the box over its width: the box rises to be nearly as high as it is wide, and a slow piston makes less

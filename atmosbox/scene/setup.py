@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.scene.rounding import rounded
-from atmosbox.scene.units import Scale
+from atmosbox.scene.units import Scale, rounded
 
 if TYPE_CHECKING:
     import numpy as np

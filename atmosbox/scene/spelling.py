@@ -7,8 +7,6 @@ from collections.abc import Iterable
 
 from atmosbox.errors import Setting, SettingError, shown
 
-__all__ = ["assignments", "field_name", "nearest", "plain"]
-
 
 def field_name(name: str) -> str:
     """Return the Python name of a setting, which a user may spell with "-" for "_".

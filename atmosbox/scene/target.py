@@ -11,8 +11,6 @@ from typing import NamedTuple
 from atmosbox.errors import Option, SettingError, either
 from atmosbox.scene.spelling import nearest, plain
 
-__all__ = ["FIX", "TARGETS", "Target", "parse"]
-
 
 class Target(NamedTuple):
     """How large the expected error of a single run may be.

@@ -10,8 +10,6 @@ from typing import Any
 from atmosbox.sheet.sheet_run import Trial
 from atmosbox.sheet.sums import measured, spelled
 
-__all__ = ["WORDS", "AnyScene", "left_out"]
-
 WORDS = Path(__file__).with_suffix(".sheet.toml")
 """The text of a sheet for a scene without a sheet of its own."""
 MOST_SETTINGS = 6

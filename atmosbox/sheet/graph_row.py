@@ -14,8 +14,6 @@ from atmosbox.sheet.sheet_run import Trial
 from atmosbox.sheet.sums import bare, spelled
 from atmosbox.simulation.preparation import Prepared, build
 
-__all__ = ["graph_rows", "until"]
-
 _TIME = "elapsed_time"
 _FRAMES = 20
 """Number of last frames over which a value is averaged, the same as for the gauges of a page."""

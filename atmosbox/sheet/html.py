@@ -13,8 +13,6 @@ from markdown_it.token import Token
 from atmosbox.sheet.marks import PARSER, blocks
 from atmosbox.sheet.worksheet import Worksheet
 
-__all__ = ["html"]
-
 _STYLE = """
 body { max-width: 46rem; margin: 1.5rem auto; padding: 0 1rem; font: 1rem/1.45 system-ui, sans-serif; color: #111; background: #fff; }
 h1, h2 { line-height: 1.2; }

@@ -12,8 +12,6 @@ from markdown_it.token import Token
 
 from atmosbox.errors import ConfigError, shown
 
-__all__ = ["PARSER", "TYPED", "Block", "as_paragraph", "blocks", "check"]
-
 PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 TYPED = "DejaVuSansMono"
 LONGEST = 60

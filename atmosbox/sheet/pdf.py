@@ -20,8 +20,6 @@ from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, Si
 from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph, blocks
 from atmosbox.sheet.worksheet import Worksheet
 
-__all__ = ["PAPERS", "Printed", "load_fonts", "pdf"]
-
 MM = 72.0 / 25.4
 PAPERS = {"a4": (210.0 * MM, 297.0 * MM), "letter": (612.0, 792.0)}
 """Width and height of the papers [points]."""

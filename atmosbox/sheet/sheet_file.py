@@ -11,8 +11,6 @@ from atmosbox.sheet.html import html
 from atmosbox.sheet.pdf import PAPERS, pdf
 from atmosbox.sheet.worksheet import Worksheet
 
-__all__ = ["FORMATS", "check", "save"]
-
 FORMATS = ("pdf", "html", "md")
 
 

@@ -15,8 +15,6 @@ from atmosbox.sheet.sums import Measured, SetNumber
 from atmosbox.sheet.text import Change
 from atmosbox.simulation import runner
 
-__all__ = ["Trial", "execute", "trials"]
-
 _LETTERS = "ABCD"
 
 

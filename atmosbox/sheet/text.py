@@ -18,8 +18,6 @@ from atmosbox import scenarios
 from atmosbox.errors import ConfigError, FileError, shown
 from atmosbox.sheet import marks, sums
 
-__all__ = ["SECTIONS", "Change", "read", "text_of"]
-
 SUFFIX = ".sheet.toml"
 MOST_CHANGES = 3
 SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}

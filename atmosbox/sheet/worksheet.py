@@ -23,8 +23,6 @@ from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
 
-__all__ = ["Worksheet", "worksheet"]
-
 _COMMAND = "`--"
 """A question that contains this needs commands."""
 _KNOBS = "Begin A again, and turn a knob above its graphs while it plays. Write down first what each graph will do."

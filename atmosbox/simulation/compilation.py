@@ -14,8 +14,6 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
 
-__all__ = ["cache_home", "compile_kernels", "compiled_here", "remember", "remembered", "told"]
-
 _USUAL = 15.0  # seconds, if this machine has not compiled the scene yet
 _BREATH = 0.2
 _NEVER_DONE = 0.97

@@ -12,8 +12,6 @@ from atmosbox.simulation.accuracy import load
 from atmosbox.simulation.compilation import remember, remembered
 from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["ExpectedTime", "expected_time", "remember_pace"]
-
 _ENOUGH = 0.2  # seconds of the engine's processor time; shorter runs do not tell the pace of a computer
 _KEPT = 9
 _WIDEST = 30.0  # largest ratio of a setting to the nearest one that was measured

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 
     from atmosbox.scene.setup import Setup
 
-__all__ = ["Replay", "Turn", "check_nothing_changes", "link_start", "read_link", "replayed"]
-
 _LONGEST = 200_000  # characters
 _MOST_TURNS = 5_000
 _MOST_FRAMES = 1_000_000

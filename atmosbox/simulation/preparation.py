@@ -26,8 +26,6 @@ from atmosbox.version import __version__
 if TYPE_CHECKING:
     from atmosbox.simulation.link import Replay
 
-__all__ = ["Card", "Prepared", "build", "card", "keeps_molecules", "prepare", "usual_engine"]
-
 _MEMORY = 8e9  # bytes that saved molecules may need
 _SMALL = 10e6  # bytes up to which the molecules are saved unasked
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from atmosbox.engine import Snapshot
 
-__all__ = ["Recording", "uninterrupted"]
-
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:

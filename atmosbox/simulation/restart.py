@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
     from atmosbox.simulation.recording import Recording
 
-__all__ = ["Restart", "check_alike", "described", "put_back", "read_state", "with_state"]
-
 FORMAT = 2
 """Version of the format that is written here."""
 

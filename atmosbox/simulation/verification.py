@@ -18,8 +18,6 @@ from atmosbox.simulation.accuracy import ExpectedError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["LEDGER_LIMIT", "Check", "headlines_of", "verify", "with_bias"]
-
 LEDGER_LIMIT = 1e-10
 """Largest residual of the energy budget of a correct run, relative to the energy in the box or exchanged so far."""
 _GIVEN_BEFORE = ("work_by_stirring",)
@@ -135,7 +133,7 @@ def _agreement(headline: Headline) -> str:
 
 def _balance(dataset: xr.Dataset) -> Check:
     """Check the energy budget again from its terms in the file."""
-    from atmosbox.engine.core.energy_budget import GIVEN, STORES, residual
+    from atmosbox.engine.core.account import GIVEN, STORES, residual
 
     terms = {name: dataset[name].values for name in (*STORES, *GIVEN, *_GIVEN_BEFORE) if name in dataset}
     worst = float(np.max(residual(terms))) if dataset.sizes["elapsed_time"] else math.nan

@@ -32,8 +32,6 @@ from atmosbox.simulation import runner
 from atmosbox.sweep.plan import Plan, Task
 from atmosbox.sweep.result import join, row
 
-__all__ = ["cores", "folder_of", "is_taken", "sweep"]
-
 REQUEST = "sweep.json"
 """The file in the folder of a sweep that tells which sweep it is."""
 _JOBS = Parameter("jobs", "1", 8, 1, 4096, kind="int", given_as=Option)

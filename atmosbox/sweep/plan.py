@@ -20,8 +20,6 @@ from atmosbox.scene.spelling import field_name
 from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.simulation.restart import described
 
-__all__ = ["MOST_RUNS", "Plan", "Task", "member_seed", "parse_vary", "plan"]
-
 MOST_RUNS = 100_000
 """Greatest number of runs of one sweep."""
 _MEMBERS = Parameter("members", "1", 8, 1, 1_000_000, kind="int", given_as=Option)

@@ -18,8 +18,6 @@ from atmosbox.scene.settings import Parameter, Value
 from atmosbox.sweep.plan import Plan, member_seed
 from atmosbox.version import __version__
 
-__all__ = ["FEWEST", "join", "mean_and_error", "row"]
-
 FEWEST = 4
 """Least number of members whose scatter gives the standard error of their mean."""
 

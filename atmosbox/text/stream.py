@@ -12,8 +12,6 @@ from typing import Any, TextIO
 
 from atmosbox.errors import AtmosboxError
 
-__all__ = ["say", "say_json", "tell"]
-
 
 def say(text: str) -> None:
     r"""Write a line or more of the result to stdout.

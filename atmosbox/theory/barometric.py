@@ -12,6 +12,14 @@ from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
 
+__all__ = [
+    "barometric_density",
+    "barometric_pressure",
+    "column_floor_ratio",
+    "column_mean_height",
+    "column_scale_height",
+]
+
 
 def _depth_in_scale_heights(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
     return as_floats(mass) * as_floats(gravity) * as_floats(depth) / as_floats(kT)

@@ -18,6 +18,8 @@ from atmosbox.theory._water import checked_positive
 from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
 
+__all__ = ["Convection", "cape_cin", "parcel_buoyancy"]
+
 
 def parcel_buoyancy(
     parcel_virtual_temperature: ArrayLike, virtual_temperature: ArrayLike, gravity: ArrayLike = STANDARD_GRAVITY

@@ -20,6 +20,8 @@ from atmosbox.theory._water import (
     checked_temperature,
 )
 
+__all__ = ["EvaporationEquilibrium", "evaporation_equilibrium", "wet_bulb_temperature"]
+
 
 class EvaporationEquilibrium(NamedTuple):
     """Air, vapour and liquid in equilibrium."""

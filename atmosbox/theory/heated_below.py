@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.theory.disc import (
+from atmosbox.theory.equation_of_state import (
     FREEZING_PACKING_FRACTION_DISCS,
     compressibility_factor_discs,
     contact_value_discs,

@@ -1,4 +1,4 @@
-r"""A column of spheres or discs with excluded volume in gravity: the barometric law of a gas that is not ideal.
+r"""A column of spheres or discs with excluded volume in gravity: its density, and its temperature in equilibrium.
 
 Each layer carries the weight of the layers above, :math:`dP/dz = -n m g`, and the column is isothermal. With
 :math:`P = n k T Z(\phi)` this means that the chemical potential decreases by the work of lifting,
@@ -21,8 +21,10 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
-from atmosbox.theory._crowding import Crowding, crowding
 from atmosbox.theory.barometric import barometric_density, column_mean_height
+from atmosbox.theory.equation_of_state import Crowding, crowding
+
+__all__ = ["column_temperature", "hydrostatic_layers", "hydrostatic_mean_height"]
 
 _NODES, _WEIGHTS = leggauss(16)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
@@ -241,3 +243,69 @@ def hydrostatic_mean_height(
     height = (edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * _NODES).ravel()
     share = profile(height) * np.tile(_WEIGHTS, len(edges) - 1)
     return float(share @ height / share.sum())
+
+
+def column_temperature(
+    energy: float,
+    molecules_per_area: float,
+    bottom: float,
+    top: float,
+    diameter: float = 0.0,
+    *,
+    mass: float = 1.0,
+    gravity: float = 1.0,
+    dimensions: int = 3,
+    rotation: int = 0,
+) -> float:
+    r"""Return the temperature kT for a given energy per molecule, :math:`\tfrac{d + r}{2} kT + m g \bar z`.
+
+    The mean height rises with temperature, so there is exactly one solution.
+
+    Parameters
+    ----------
+    energy
+        Kinetic and potential energy per molecule [energy].
+    molecules_per_area
+        As in :func:`hydrostatic_layers` [length^-2; in a plane, length^-1].
+    bottom, top
+        Lowest and highest place of a molecule's centre [length].
+    diameter
+        Diameter of a molecule [length]; zero for an ideal gas.
+    mass, gravity
+        Mass of a molecule [mass] and acceleration of gravity [length time^-2].
+    dimensions
+        3, or 2 for discs in a plane.
+    rotation
+        Degrees of freedom of rotation.
+
+    Returns
+    -------
+    float
+        Temperature as an energy [energy].
+
+    Raises
+    ------
+    ValueError
+        If the column would freeze at its floor, or is so dense that it would be less than half as warm as a gas of
+        points.
+
+    Examples
+    --------
+    In a very high column of points with 5/2 kT each, 3/2 kT are energy of motion and 1 kT is potential energy:
+
+    >>> round(column_temperature(2.5, 1.0, 0.0, 60.0), 3)
+    1.0
+    """
+    from scipy.optimize import brentq
+
+    freedom = dimensions + rotation
+
+    def missing(kT: float) -> float:
+        column = molecules_per_area, bottom, top, kT, mass, gravity, diameter
+        height = hydrostatic_mean_height(*column, dimensions=dimensions)
+        return 0.5 * freedom * kT + mass * gravity * height - energy
+
+    # all energy may be motion; in a high column of points kT per molecule is potential energy, of spheres a little more
+    most = 2.0 * energy / freedom
+    kT: float = brentq(missing, 0.5 * most * freedom / (freedom + 2.0), most, xtol=1e-14 * energy)
+    return kT

@@ -26,6 +26,14 @@ from atmosbox.theory._water import (
 )
 from atmosbox.theory.constants import BOLTZMANN, WATER
 
+__all__ = [
+    "LEAVING_FREEDOM",
+    "hertz_knudsen_flux",
+    "leaving_energy_density",
+    "microcanonical_flux",
+    "staying_energy_density",
+]
+
 LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
 """Energy that a molecule carries across the surface, in kT: 2 of flight (fast ones cross more often), 1.5 rotation."""
 

@@ -24,9 +24,8 @@ from atmosbox.file.netcdf import read
 from atmosbox.file.provenance import global_attributes, parameters
 from atmosbox.scene import engines
 from atmosbox.simulation.recording import uninterrupted
-from atmosbox.trade import repetition, timed_run
-from atmosbox.trade.repetition import Progress
-from atmosbox.trade.timed_run import Quantity, Trial, Way, ways_of
+from atmosbox.trade import timed_run
+from atmosbox.trade.timed_run import Progress, Quantity, Trial, Way, ways_of
 from atmosbox.version import __version__
 
 __all__ = ["Way", "measure", "ways_of"]
@@ -158,7 +157,7 @@ def measure(
                 with contextlib.suppress(AtmosboxError):  # the run itself tells what is wrong
                     timed_run.compile_way(scene, way)
             try:
-                left_out = repetition.repeat(
+                left_out = timed_run.repeat(
                     max(budget - spent, 0.0), results, run, lambda share, k: tell(share, ways[own[k]].label), save
                 )
             except KeyboardInterrupt:

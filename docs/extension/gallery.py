@@ -46,7 +46,7 @@ def make(folder: Path, seconds: float, chosen: list[str]) -> None:
     """Make pages, films of some seconds and worksheets of some scenes, and their labs, in a folder."""
     import atmosbox as ab
     from atmosbox import film, sheet
-    from atmosbox.cli.lab_folder import save_all
+    from atmosbox.cli.lab import save_all
     from atmosbox.page import save
 
     for name in chosen:

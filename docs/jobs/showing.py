@@ -11,8 +11,7 @@ from jobs.registry import Findings, job
 
 import atmosbox
 from atmosbox.page import save
-from atmosbox.plot.compare import compared, naming
-from atmosbox.plot.compare.figure import drawn
+from atmosbox.plot.compare import compared, drawn, naming
 from atmosbox.text.report import comparison_lines
 
 WIDTH, HEIGHT = 1280, 720

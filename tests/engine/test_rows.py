@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from atmosbox.engine import ParcelSet, Piston
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.exact.screening import BATCH, CLOSING, PATH, SLACK, screen
+from atmosbox.engine.exact.rows import BATCH, CLOSING, PATH, SLACK, screen
 from tests.engine.boxes import SMOOTH, many_events
 
 

@@ -16,7 +16,8 @@ import atmosbox
 from atmosbox import __version__, scenarios
 from atmosbox.errors import SettingError, UnknownSceneError
 from atmosbox.file.netcdf import read
-from atmosbox.lab import lab_file, save_lab
+from atmosbox.lab import page_file as lab_file
+from atmosbox.lab import save_lab
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.link import read_link, replayed
 from atmosbox.simulation.preparation import prepare

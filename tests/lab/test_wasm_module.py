@@ -7,7 +7,7 @@ import pytest
 
 from atmosbox.engine.core.state import Modes
 from atmosbox.errors import EngineError, on_command_line
-from atmosbox.lab.lab_box import lab_box
+from atmosbox.lab.box import lab_box
 from atmosbox.lab.wasm_module import BESIDE, FOLDER, SCENES, module_bytes, module_name, source_stamp, stamp_of
 from atmosbox.simulation.preparation import prepare
 

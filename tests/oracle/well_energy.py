@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from atmosbox.theory.well_gas import _HARD, _third
+from atmosbox.theory.simple_fluid import _HARD, _third
 
 
 def square_well_energy(density, temperature, reach=1.5):

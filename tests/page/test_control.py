@@ -4,7 +4,7 @@ import pytest
 
 from atmosbox import scenarios
 from atmosbox.errors import ConfigError
-from atmosbox.page.control import knob_controls, setting_controls
+from atmosbox.page.controls import knob_controls, setting_controls
 from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.knob import Knob
 from atmosbox.scene.settings import SceneSettings, setting

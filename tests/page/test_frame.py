@@ -4,9 +4,8 @@ import struct
 
 import numpy as np
 
-from atmosbox.page.frame import encode
-from atmosbox.page.page_liquid import clumps
-from atmosbox.page.thinning import MOST, chosen, share
+from atmosbox.page.frame import clumps, encode
+from atmosbox.page.stage import MOST, chosen, share
 
 NO_DROPS = np.zeros((0, 4))
 

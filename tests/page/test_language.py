@@ -9,7 +9,7 @@ import pytest
 
 from atmosbox import scenarios
 from atmosbox.cli.option import Language
-from atmosbox.page.control import knob_controls, setting_controls
+from atmosbox.page.controls import knob_controls, setting_controls
 from atmosbox.page.document import LANGUAGES, words
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.word import card_of

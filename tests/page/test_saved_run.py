@@ -5,7 +5,7 @@ import pytest
 
 from atmosbox.file.molecules import molecules
 from atmosbox.file.netcdf import read, write
-from atmosbox.page.page_box import page_box
+from atmosbox.page.stage import page_box
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import DRY_AIR, WATER
 

@@ -18,8 +18,7 @@ from atmosbox.engine.core.jit import COMPILED
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
 from atmosbox.scene.ascent import along_frames, temperature_covariance
-from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
-from atmosbox.scene.ascent.raining import walk
+from atmosbox.scene.ascent.random_walk import entropy_gain, gathered, walk
 from atmosbox.simulation import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")

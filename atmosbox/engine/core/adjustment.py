@@ -8,8 +8,6 @@ from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, SPECULAR, WALL_NAMES, HeatBath, Specular, new_walls
 
-__all__ = ["Adjustable"]
-
 
 class Adjustable(Account):
     """A box whose piston, heat baths and gravity may be changed between two advances; `Parcel` is one.

@@ -63,18 +63,6 @@ from atmosbox.engine.core.state import Modes
 if sys.platform != "win32":
     import fcntl
 
-__all__ = [
-    "LlvmText",
-    "by_reference",
-    "compiled",
-    "lowest_bit",
-    "prange",
-    "prefetch",
-    "screen_of",
-    "type_of",
-    "use_threads",
-]
-
 prange = numba.prange
 """The ``range`` of a loop whose iterations a ``parallel`` kernel shares among threads."""
 

@@ -22,8 +22,6 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["cbrt", "circle", "exp", "expm1", "lgamma", "log", "log1p", "log_of_normal", "root"]
-
 _LN2_HIGH = 6.93147180369123816490e-01
 _LN2_LOW = 1.90821492927058770002e-10
 _SMALLEST_NORMAL = 2.0**-1022

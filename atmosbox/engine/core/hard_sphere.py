@@ -8,8 +8,6 @@ import math
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma
 
-__all__ = ["earlier_root", "quadratic", "resolve_contact", "share_energy"]
-
 
 @kernel(early=True)
 def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):

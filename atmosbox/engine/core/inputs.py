@@ -10,8 +10,6 @@ from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
 
-__all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "speeds", "sum_of_squares", "whole"]
-
 Array = NDArray[np.float64]
 
 _PIECE = 1 << 20  # number of molecules whose squares are summed at once

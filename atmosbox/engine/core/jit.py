@@ -12,8 +12,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["COMPILED", "POSITIVE", "Kernel", "by_reference", "kernel", "lowest_bit", "prefetch", "use_threads"]
-
 POSITIVE = (1 << 40) - 1
 """``index & POSITIVE`` tells the compiler that an index is not negative: no code for counting from the end is made."""
 

@@ -22,20 +22,6 @@ import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-__all__ = [
-    "ForeignError",
-    "announce",
-    "cache_folder",
-    "code_of",
-    "compilations",
-    "keep",
-    "own_content",
-    "own_folder",
-    "source_digest",
-    "warn_once",
-]
-
-
 _DIGEST = re.compile(rb"[0-9a-f]{16}")
 
 

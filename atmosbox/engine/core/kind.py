@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.state import KIND, Kinds, aligned_records
 from atmosbox.engine.exact.cells import size_classes
 
-__all__ = ["classify"]
-
 Array = NDArray[np.float64]
 
 

@@ -12,8 +12,6 @@ from atmosbox.engine.core.parcel import Array, Parcel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.walls import HEAT_BATH
 
-__all__ = ["MarchingParcel"]
-
 _WORK = 400_000
 _SLACK = 1e-9
 _HOTTER = 16.0

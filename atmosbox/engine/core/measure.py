@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.core.parcel import Parcel, Snapshot
 
-__all__ = ["Layers", "layer_sample", "mean_free_path", "momentum", "speed_counts", "temperature"]
-
 Array = NDArray[np.float64]
 
 

@@ -9,8 +9,6 @@ import math
 
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["time_to_ceiling", "time_to_leave", "time_to_leave_in_gravity"]
-
 
 @kernel
 def time_to_leave(x, v, low, high):

@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.refusal import PackingError, RefusedError, shown
 
-__all__ = ["packing_fraction", "refuse_impossible", "refuse_solid"]
-
 Array = NDArray[np.float64]
 _DENSEST = math.pi / math.sqrt(18.0)
 _DENSEST_PLANE = math.pi / math.sqrt(12.0)

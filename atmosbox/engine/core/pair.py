@@ -14,8 +14,6 @@ import numpy as np
 from atmosbox.engine.core.hard_sphere import earlier_root, quadratic, resolve_contact
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["approach", "extent", "nearest_along", "nearest_image", "predict", "reach", "resolve", "soonest_image"]
-
 
 @kernel
 def extent(radius):
@@ -80,7 +78,7 @@ def soonest_image(rx, ry, rz, ux, uy, uz, distance, box):
     --------
     The nearest image is one above, and is missed; the one below is three away:
 
-    >>> from atmosbox.engine.core.box import new_box
+    >>> from atmosbox.engine.core.state import new_box
     >>> box = new_box(
     ...     np.full(3, 4.0), (True,) * 3, moving=False, gravity=0.0, planar=False, exchange=1.0, stall=1.0
     ... )

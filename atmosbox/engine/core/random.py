@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.elementary import circle, exp, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["RandomNumbers", "Source", "gamma", "gamma_of_shape", "gaussian_pair", "new_state", "normal", "uniform"]
-
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)

@@ -15,8 +15,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["LARGEST", "SMALLEST", "CoarseStepWarning", "PackingError", "RefusedError", "StalledError", "shown"]
-
 SMALLEST, LARGEST = 1e-50, 1e50
 """Range of masses, lengths, speeds and accelerations: their products in the time of a contact are numbers then."""
 

@@ -24,8 +24,6 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.core.refusal import RefusedError
 
-__all__ = ["SavedState", "pack", "restore", "save", "unpack"]
-
 _LINE = 64
 
 Pieces = dict[str, NDArray[np.uint8]]

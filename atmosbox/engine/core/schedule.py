@@ -8,8 +8,6 @@ from typing import Protocol
 
 from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
 
-__all__ = ["Constant", "Ramp", "Schedule", "Steps", "as_schedule"]
-
 
 class Schedule(Protocol):
     """A number as a function of time."""

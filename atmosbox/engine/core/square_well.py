@@ -26,8 +26,6 @@ from typing import NamedTuple
 
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["BOUNCE", "CAPTURE", "CORE", "RELEASE", "Well", "resolve_crossing", "time_to_crossing"]
-
 CORE, CAPTURE, RELEASE, BOUNCE = range(4)
 """The four events of a pair; a release that is too slow becomes a bounce when it is resolved."""
 

@@ -20,18 +20,6 @@ from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 from atmosbox.engine.core.state import Walls
 
-__all__ = [
-    "WALL_NAMES",
-    "HeatBath",
-    "Periodic",
-    "Piston",
-    "Specular",
-    "Wall",
-    "new_walls",
-    "resolve_wall_hit",
-    "wall_kT",
-]
-
 SPECULAR, PERIODIC, HEAT_BATH, PISTON, POOL = 0, 1, 2, 3, 4
 """The laws by number. The floor of a box with a `liquid.Pool` is a `POOL`, whatever law was given for it."""
 WALL_NAMES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")

@@ -19,30 +19,6 @@ import numpy as np
 from atmosbox.engine.core.compiler import prange
 from atmosbox.engine.core.jit import kernel
 
-__all__ = [
-    "BLOCK",
-    "Air",
-    "Columns",
-    "Features",
-    "Grid",
-    "March",
-    "MoleculeKinds",
-    "Step",
-    "Workspace",
-    "cells_per_length",
-    "count_by_cell",
-    "find_cell",
-    "index_by_cell",
-    "new_columns",
-    "new_gather",
-    "new_grid",
-    "new_workspace",
-    "number_present",
-    "reserve_places",
-    "share_cells",
-    "share_of",
-]
-
 BLOCK = 1024
 """Number of molecules that are moved together: few enough to stay in the nearest cache."""
 

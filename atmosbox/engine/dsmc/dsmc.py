@@ -55,8 +55,6 @@ from atmosbox.engine.dsmc.moist_pool import pool_step
 from atmosbox.engine.dsmc.pairing import collide, scramble
 from atmosbox.engine.dsmc.streaming import WAITS, Axis, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
 
-__all__ = ["Resolution", "densest_layer", "numbers_of_cells", "specialise"]
-
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _SHARED = 8  # number of steps after which cells are shared again among threads; results do not depend on it
 

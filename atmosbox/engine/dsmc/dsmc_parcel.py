@@ -7,18 +7,16 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine.core.box import new_box
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.inputs import number, sum_of_squares, whole
 from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError, shown
+from atmosbox.engine.core.state import new_box
 from atmosbox.engine.dsmc.columns import Columns, March, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
 from atmosbox.engine.dsmc.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
 from atmosbox.engine.dsmc.pairing import new_tries
-
-__all__ = ["DsmcParcel"]
 
 _REGROUP, _REGROUP_MANY, _MANY = 48, 16, 200_000
 _THREADED = 10_000

@@ -37,8 +37,6 @@ from atmosbox.engine.liquid.reservoir import (
     wait,
 )
 
-__all__ = ["Water", "copy_slot", "emit", "mist_step", "new_water", "next_rain", "place", "strike", "touch"]
-
 
 class Water(NamedTuple):
     """The liquid in a box of many molecules.

@@ -16,8 +16,6 @@ from atmosbox.engine.dsmc.moist_columns import Water, new_water
 from atmosbox.engine.liquid.moist_account import MoistAccount
 from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
-__all__ = ["MoistDsmcParcel"]
-
 _MOST_KINDS = 256
 
 

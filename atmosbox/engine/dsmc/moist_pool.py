@@ -15,8 +15,6 @@ from atmosbox.engine.dsmc.streaming import bounce
 from atmosbox.engine.exact.calendar import next_event, schedule
 from atmosbox.engine.liquid.reservoir import evaporation_rate, rain_out, wait
 
-__all__ = ["fill_holes", "pool_step"]
-
 _GONE = -1.0
 
 

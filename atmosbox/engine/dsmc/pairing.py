@@ -18,8 +18,6 @@ from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
 from atmosbox.engine.core.random import uniform
 
-__all__ = ["Tries", "collide", "new_tries", "scramble"]
-
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)

@@ -18,8 +18,6 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.walls import PISTON, resolve_wall_hit
 
-__all__ = ["WAITS", "Axis", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
-
 WAITS = 4
 """The mark of a molecule that waits. Smaller marks, 1 and 2, tell the axes along which it is folded, x, y or both."""
 

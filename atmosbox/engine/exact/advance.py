@@ -1,23 +1,70 @@
 """Advance a box: the loop over events, and what happens between its stops.
 
+All times that the engine works with are local: they count from ``Walls.epoch``. When the next event lies further ahead
+of that than the length of an epoch, all clocks are set back by whole epochs.
+
+Python runs these functions as they are written; the kernels of the lab's page compile them. ``clocks`` are the times of
+events that belong to no molecule: those of a liquid, or of a bath.
+
+Advance a box: the loop over events, and what happens between its stops.
+
 The engine's loop stops on the way because an epoch of its clocks is over, the copies in the rows of cells are too old,
 a row is full, or the cells no longer fit the box. Python runs these functions as they are written, and the lab's page
 compiles them. If memory is too small, they return ``FULL``; Python makes more and calls again.
 """
 
 import functools
+import math
 from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.layout import CHOOSE, LENGTHEN, NEW_EPOCH, as_laid_out, settling
+from atmosbox.engine.exact.rows import START, STOP
 from atmosbox.engine.exact.turning import Ascent
 
-__all__ = ["Book", "Passed", "advancing", "ascent_of", "dry_loop", "passing"]
+
+@kernel(plain=True)
+def next_time(gas, clocks):
+    """Return the local time of the next event of a molecule or of one of the clocks [time]."""
+    time = gas.calendar.time[1]
+    for clock in clocks:
+        time = min(time, clock)
+    return time
+
+
+@kernel(plain=True)
+def whole_epochs(ahead, length):
+    """Return by how much to set clocks back when the next event is at the local time ``ahead`` [time]; 0 for no event.
+
+    The result depends on events alone, not on where a run is cut into pieces.
+
+    Examples
+    --------
+    >>> whole_epochs(70.0, 32.0), whole_epochs(31.0, 32.0), whole_epochs(math.inf, 32.0)
+    (64.0, 32.0, 0.0)
+    """
+    return 0.0 if math.isinf(ahead) else max(1.0, math.floor(ahead / length)) * length
+
+
+@kernel(plain=True)
+def set_back(step, gas, clocks, modes):
+    """Set all clocks of a box back by ``step`` [time]."""
+    clock, contact, due = gas.molecules.clock, gas.events.contact_time, gas.calendar.time
+    clock -= step
+    contact -= step
+    due -= step
+    clocks -= step
+    gas.walls.piston[2] -= step
+    gas.walls.epoch[0] += step
+    gas.tallies.progress[0] -= step
+    if modes.rows:
+        gas.cells.copies.epoch[START] -= step
+        gas.cells.copies.epoch[STOP] -= step
+
 
 # The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
 _DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value

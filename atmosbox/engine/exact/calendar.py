@@ -10,8 +10,6 @@ import numpy as np
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.state import Calendar
 
-__all__ = ["new_calendar", "next_event", "schedule"]
-
 
 def new_calendar(molecules: int) -> Calendar:
     """Return an empty calendar, in which no molecule has an event.

@@ -34,8 +34,6 @@ from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.exact.row_cells import MARGIN, MOST_CELLS, cell_widths, filled_share, write_layers
 
-__all__ = ["ROW", "Grid", "append", "choose_grid", "overlapped", "remove", "size_classes", "slot_at"]
-
 _FEW = 4
 _LEAST_REACH = 1e-9
 """Smallest radius that a molecule is assumed to have, relative to the box: a point too is in two cells at an edge."""

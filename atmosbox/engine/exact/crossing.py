@@ -15,8 +15,6 @@ from atmosbox.engine.exact.encounter import size_and_radius
 from atmosbox.engine.exact.prediction import Meeting, next_move, side, soonest_in_cell
 from atmosbox.engine.exact.search import CONTACT
 
-__all__ = ["Crossed", "cross", "is_wall"]
-
 
 class Crossed(IntEnum):
     """The result when a molecule has reached a boundary.

@@ -11,8 +11,6 @@ from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.core.walls import resolve_wall_hit
 
-__all__ = ["hit", "kind_of", "meet", "motion_at", "size_and_radius", "slots_of", "write"]
-
 
 @kernel
 def motion_at(i, t, gas, modes):

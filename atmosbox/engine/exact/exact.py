@@ -31,8 +31,6 @@ from atmosbox.engine.exact.rows import STOP, fill
 from atmosbox.engine.exact.search import CONTACT
 from atmosbox.engine.exact.turning import Next, ahead, gauges, replan_under, turn
 
-__all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
-
 
 class Status(IntEnum):
     """Why the loop over events has stopped.

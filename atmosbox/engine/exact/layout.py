@@ -25,12 +25,6 @@ from atmosbox.engine.exact.row_cells import (
 )
 from atmosbox.engine.exact.rows import FEWEST, MORE, MOST, describe_cells, row_stride
 
-__all__ = [
-    "CHOOSE", "FOLLOW", "LENGTHEN", "NEW_EPOCH", "NOTHING", "NUMBER", "PLACE", "PLACES", "Column", "Layout",
-    "as_laid_out", "choose_cells", "describe", "new_cells", "new_rows", "settling", "stride_of", "write_cells",
-    "write_column",
-]  # fmt: skip
-
 PLACES, NUMBER, LAST = 0, 1, 4
 """Indices of ``Layout.shape``: the number of places of a row, the numbers of cells, and the last slots."""
 NOTHING, LENGTHEN, COPY, NEW_EPOCH, PLACE, CHOOSE, FOLLOW = range(7)

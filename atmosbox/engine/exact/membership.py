@@ -12,8 +12,6 @@ from atmosbox.engine.core.jit import POSITIVE, kernel, lowest_bit
 from atmosbox.engine.exact.cells import append, overlapped, remove
 from atmosbox.engine.exact.rows import enter, has_place, leave, members_of, name_in, number_of_places, start_of
 
-__all__ = ["Change", "change", "listed", "places", "row_of"]
-
 
 class Change(IntEnum):
     """What `change` does: ``TEST`` whether the rows have room, ``REMOVE`` a molecule from them, or ``ADD`` it."""

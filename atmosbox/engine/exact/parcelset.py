@@ -11,14 +11,13 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.box import new_box
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.lift import FollowPressure
 from atmosbox.engine.core.packing import refuse_solid
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError
-from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
+from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records, new_box
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.advance import Book, Passed, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
@@ -44,8 +43,6 @@ from atmosbox.engine.exact.row_cells import MARGIN, TALLER, widths_for_rows
 from atmosbox.engine.exact.rows import FEWEST
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
-
-__all__ = ["Arrays", "ParcelSet"]
 
 _CHUNK = 200_000
 _NO_CLOCKS = np.full(1, math.inf)

@@ -24,8 +24,6 @@ from atmosbox.engine.core.pair import nearest_along, reach, resolve
 from atmosbox.engine.core.random import new_state, uniform
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls, resolve_wall_hit
 
-__all__ = ["Event", "Reference", "time_to_close"]
-
 Array = NDArray[np.float64]
 
 

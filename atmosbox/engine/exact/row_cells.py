@@ -9,19 +9,6 @@ import math
 from atmosbox.engine.core.elementary import expm1, log, root
 from atmosbox.engine.core.jit import kernel
 
-__all__ = [
-    "MARGIN",
-    "MOST_CELLS",
-    "TALLER",
-    "cell_numbers",
-    "cell_widths",
-    "filled_share",
-    "widths_for_rows",
-    "write_even_layers",
-    "write_layers",
-    "write_slots",
-]
-
 MARGIN = 1.0 + 1e-7
 """How much larger than its sphere a molecule is assumed to be."""
 MOST_CELLS = 20_000

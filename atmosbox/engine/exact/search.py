@@ -14,6 +14,10 @@ from atmosbox.engine.core.pair import approach, extent, predict, reach
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
 from atmosbox.engine.exact.rows import (
+    BATCH,
+    CLOSING,
+    DISTANCE,
+    SQUARE,
     START,
     TOP_SPEED,
     centre_of,
@@ -24,12 +28,10 @@ from atmosbox.engine.exact.rows import (
     name_at,
     own_place,
     path_of,
+    screen,
     start_of,
     write_copy,
 )
-from atmosbox.engine.exact.screening import BATCH, CLOSING, DISTANCE, SQUARE, screen
-
-__all__ = ["CONTACT", "Found", "search"]
 
 CONTACT = 6
 """Which event comes first: 0 to 5 a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact."""

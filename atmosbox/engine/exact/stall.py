@@ -11,8 +11,6 @@ from atmosbox.engine.core.walls import WALL_NAMES
 
 _JAMMED, _JAMMED_PLANE = 0.63, 0.82  # random close packing, of spheres and of discs
 
-__all__ = ["crushing_height", "is_jammed", "why_crowded", "why_crushed", "why_stalled"]
-
 
 def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *, planar: bool) -> float:
     """Return the lowest ceiling [length]: 0.6 of the box filled, 1.02 diameters, or a thousandth of the first height.

@@ -17,8 +17,6 @@ from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
 from atmosbox.engine.exact.prediction import CEILING, limits, next_move
 from atmosbox.engine.exact.search import CONTACT
 
-__all__ = ["HIGHEST", "LOWEST", "Ascent", "Next", "ahead", "gauges", "replan_under", "turn"]
-
 LOWEST, HIGHEST = 0.6, 1.5
 """Lowest and highest ceiling, relative to its height when the cells were laid out; beyond, they are laid out again."""
 

@@ -26,11 +26,20 @@ from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
-from atmosbox.engine.liquid.curvature import given_by_surface, leaving_rates, surface_energy
-from atmosbox.engine.liquid.drop_shape import DropRecords, about, placed, radius_of, resize, surface_left, within
-from atmosbox.engine.liquid.insertion import Place, has_room, move_to, place_at
+from atmosbox.engine.liquid.drop_shape import (
+    DropRecords,
+    about,
+    given_by_surface,
+    leaving_rates,
+    placed,
+    radius_of,
+    resize,
+    surface_energy,
+    surface_left,
+    within,
+)
+from atmosbox.engine.liquid.insertion import Place, enter, has_room, move_to, place_at, take_out, withdraw
 from atmosbox.engine.liquid.moist import ceiling_at, renew
-from atmosbox.engine.liquid.phase import enter, take_out, withdraw
 from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, stays, wait
 
 __all__ = ["DropRecords", "specialise"]

@@ -16,8 +16,6 @@ from atmosbox.engine.liquid.drop import DropRecords
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.substance import Drops, Liquid
 
-__all__ = ["DropParcelSet"]
-
 
 class DropParcelSet(MoistParcelSet):
     """A set of molecules with its box and with drops in it, advanced exactly.

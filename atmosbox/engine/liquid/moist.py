@@ -22,8 +22,7 @@ from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.turning import Ascent, Next, ahead, gauges, turn
-from atmosbox.engine.liquid.insertion import Place, find_place
-from atmosbox.engine.liquid.phase import enter, withdraw
+from atmosbox.engine.liquid.insertion import Place, enter, find_place, withdraw
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
     LIQUID,
@@ -39,8 +38,6 @@ from atmosbox.engine.liquid.reservoir import (
     stays,
     wait,
 )
-
-__all__ = ["MoistAscent", "ceiling_at", "renew", "specialise"]
 
 _MAY_MEET, _LEAVES, _RAINS = range(3)
 

@@ -23,8 +23,6 @@ from atmosbox.engine.liquid.reservoir import (
 )
 from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
-__all__ = ["MoistAccount"]
-
 
 class MoistAccount(Parcel):
     """A box with liquid in it: the common part of the engines that can hold one.

@@ -13,8 +13,6 @@ from atmosbox.engine.liquid import drop, moist
 from atmosbox.engine.liquid.moist import MoistAscent
 from atmosbox.engine.liquid.reservoir import Reservoir
 
-__all__ = ["Moisture", "moist_loop"]
-
 
 class Moisture(NamedTuple):
     """The data of the liquid of a box.

@@ -12,8 +12,6 @@ from atmosbox.engine.liquid.moist_account import MoistAccount
 from atmosbox.engine.liquid.moist_loop import Moisture, moist_loop
 from atmosbox.engine.liquid.substance import Liquid
 
-__all__ = ["MoistParcelSet"]
-
 
 class MoistParcelSet(MoistAccount, ParcelSet):
     """A set of molecules with its box and with liquid in it, advanced exactly.

@@ -7,8 +7,6 @@ from atmosbox.engine.core.elementary import cbrt, exp, log
 from atmosbox.engine.core.inputs import number, whole
 from atmosbox.engine.core.refusal import RefusedError
 
-__all__ = ["Drops", "Liquid", "Mist", "Pool", "Substance"]
-
 
 def _above_zero(value: float, name: str) -> None:
     if not number(value, name) > 0.0:

@@ -11,8 +11,6 @@ from atmosbox.engine.core.packing import packing_fraction, refuse_impossible
 from atmosbox.engine.core.random import Source
 from atmosbox.engine.core.refusal import PackingError
 
-__all__ = ["lattice_positions"]
-
 Array = NDArray[np.float64]
 
 

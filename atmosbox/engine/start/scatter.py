@@ -16,8 +16,6 @@ from atmosbox.engine.core.random import RandomNumbers, Source, uniform
 from atmosbox.engine.core.refusal import PackingError, RefusedError
 from atmosbox.engine.start.overlap import bins_of, enter, is_free, leave, push, spheres_of
 
-__all__ = ["SERIES", "crowd", "random_positions", "scatter"]
-
 Array = NDArray[np.float64]
 SERIES = float(1 << 53)
 """Number of series of random numbers with which molecules may be placed (not as a power: C libraries round powers)."""

@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.random import RandomNumbers, Source
-from atmosbox.engine.start.clearing import clear_of_drops
+from atmosbox.engine.start.overlap import clear_of_drops
 from atmosbox.engine.start.scatter import random_positions
 from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies
-
-__all__ = ["Drawn", "EqualSpeeds", "Maxwell", "Placed", "Rotating", "Scattered", "Start"]
 
 Array = NDArray[np.float64]
 

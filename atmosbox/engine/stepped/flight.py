@@ -36,8 +36,6 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.walls import SPECULAR, resolve_wall_hit
 
-__all__ = ["MOTIONS", "SMOOTH_WALLS", "fly"]
-
 MOTIONS = ("parabola", "euler")
 PARABOLA, EULER = range(2)
 SMOOTH_WALLS = ("mirror", "fold", "flip", "clamp", "undo")

@@ -7,19 +7,15 @@ from typing import ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine.core.box import new_box
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.core.refusal import CoarseStepWarning, RefusedError, StalledError, shown
-from atmosbox.engine.core.state import KIND, Kinds, Modes, aligned_records
+from atmosbox.engine.core.state import KIND, Kinds, Modes, aligned_records, new_box
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.stall import crushing_height, why_crushed
-from atmosbox.engine.stepped.collide import INDEX_ORDER, LOOK, LOOK_AHEAD, RULES
 from atmosbox.engine.stepped.flight import MOTIONS, SMOOTH_WALLS
-from atmosbox.engine.stepped.stepped import Cells, Step, SteppedGas, specialise
-
-__all__ = ["SteppedParcel"]
+from atmosbox.engine.stepped.stepped import INDEX_ORDER, LOOK, LOOK_AHEAD, RULES, Cells, Step, SteppedGas, specialise
 
 _COARSE = 0.1
 _OVERLAP = 1e-9

@@ -19,8 +19,6 @@ from atmosbox.engine.wells.vicinity import Vicinity, new_vicinity
 from atmosbox.engine.wells.well_advance import Lists, advancing, as_listed
 from atmosbox.engine.wells.well_events import WellGas, specialise
 
-__all__ = ["AttractingParcelSet"]
-
 _TIGHT = 1.05
 _KINDS = 64
 _FEWEST = 64

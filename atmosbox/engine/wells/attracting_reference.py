@@ -21,8 +21,6 @@ from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.exact.reference import Event, Reference, time_to_close
 from atmosbox.engine.wells.attraction import RandomBath, SquareWell, new_bath, well_table
 
-__all__ = ["AttractingReference"]
-
 _KINDS = {"contact": CORE, "capture": CAPTURE, "release": RELEASE}
 
 

@@ -11,8 +11,6 @@ from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 
-__all__ = ["Bath", "RandomBath", "SquareWell", "Wells", "new_bath", "new_wells", "well_table"]
-
 Array = NDArray[np.float64]
 
 _WIDEST = 5.0

@@ -34,11 +34,6 @@ from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.square_well import Well
 from atmosbox.engine.core.state import Motion
 
-__all__ = [
-    "Vicinity", "bring_back", "enter", "is_inside", "new_vicinity", "renew", "set_inside", "time_to_leave_shell",
-    "well_of",
-]  # fmt: skip
-
 _WIDTHS = 12
 _RATIO = 0.85
 _NEIGHBOURS = 16

@@ -17,8 +17,6 @@ from atmosbox.engine.exact.layout import LENGTHEN, NOTHING
 from atmosbox.engine.wells.vicinity import Vicinity
 from atmosbox.engine.wells.well_events import WellGas, specialise
 
-__all__ = ["Lists", "advancing", "as_listed"]
-
 _ROW_FULL = Status.ROW_FULL.value
 
 

@@ -36,8 +36,6 @@ from atmosbox.engine.wells.vicinity import (
     well_of,
 )  # fmt: skip
 
-__all__ = ["WellGas", "specialise"]
-
 SHELL = CONTACT + 4
 """Which event comes first: 0 to 5 a wall, 6 to 8 `CORE`, `CAPTURE` or `RELEASE` of a pair, 10 the end of the shell."""
 _BATH = 3

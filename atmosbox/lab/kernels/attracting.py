@@ -12,8 +12,6 @@ from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.wells.well_advance import advancing
 from atmosbox.engine.wells.well_events import specialise
 
-__all__ = ["Lists", "attracting", "energy_of_wells", "warm_bath"]
-
 
 class Lists(NamedTuple):
     """The sizes of the lists of neighbours, and the depth of the wells.

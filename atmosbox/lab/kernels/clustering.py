@@ -20,8 +20,6 @@ from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.gauging import Reading, gauging
 from atmosbox.lab.kernels.picture import picture
 
-__all__ = ["FIRST", "Crowd", "DropReading", "clustering"]
-
 FIRST = int(max(Reading)) + 6
 """Index in ``Gauges.reading`` of the first reading of drops: after the temperatures of the six walls."""
 

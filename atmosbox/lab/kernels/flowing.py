@@ -9,8 +9,6 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 
-__all__ = ["ALOFT", "ROLLS", "WIND", "Flow", "across", "adiabat", "can_flow", "flowing"]
-
 WIND, ROLLS, ALOFT = 21, 22, 23
 """Indices of the readings of the wind in ``Gauges.reading``: its speed, that of rolls, and the share aloft."""
 

@@ -21,8 +21,6 @@ from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
 from atmosbox.lab.kernels.in_gas import is_away, number_in_gas
 from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
-__all__ = ["ENERGY", "Gauges", "Reading", "gauging"]
-
 
 class Gauges(NamedTuple):
     """The data of the instruments of a box.

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-from atmosbox.engine.core.course import interpolate
 from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.lift import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.engine.liquid.reservoir import (
@@ -22,8 +22,6 @@ from atmosbox.engine.liquid.reservoir import (
     heat_capacity,
 )
 from atmosbox.lab.kernels.in_gas import number_in_gas
-
-__all__ = ["Hygrometer", "WaterReading", "hygrometry"]
 
 
 class Hygrometer(NamedTuple):

@@ -6,8 +6,6 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["is_away", "number_in_gas"]
-
 
 @kernel
 def is_away(i, gas, modes):

@@ -1,28 +1,41 @@
-"""The kernels that a page calls, by name, for one set of modes; among them those of the knobs."""
+"""The kernels that a page calls, by name, for one set of modes."""
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from typing import Any
 
-from atmosbox.engine.core.course import interpolate
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.lift import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.exact.advance import Passed, advancing, dry_loop
+from atmosbox.engine.exact.layout import PLACE
+from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.lab.kernels.attracting import attracting, warm_bath
-from atmosbox.lab.kernels.averaging import average, forget
+from atmosbox.lab.kernels.averaging import average, end_profile, forget
 from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.flowing import adiabat, can_flow
 from atmosbox.lab.kernels.gauging import gauging
-from atmosbox.lab.kernels.gravity import can_set_gravity, gravity_setter
-from atmosbox.lab.kernels.height_profile import end_profile
-from atmosbox.lab.kernels.moist_knobs import moist_knobs
-from atmosbox.lab.kernels.passing import passing
+from atmosbox.lab.kernels.knobs import can_set_gravity, gravity_setter, moist_knobs
 from atmosbox.lab.kernels.picture import picture
 from atmosbox.lab.kernels.starting import can_start, starting
 
-__all__ = ["kernels"]
+
+@functools.cache
+def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``pass_time`` and ``place`` of one set of modes."""
+    pass_time, settle = advancing(modes, moist_loop if modes.phases else dry_loop)
+
+    @kernel
+    def place(gas, book, layout):
+        """Enter all molecules into their cells and plan their events; return ``DONE`` or ``FULL``."""
+        layout.due[0] = PLACE
+        return Passed.DONE.value if settle(gas, book.now[0], layout) else Passed.FULL.value
+
+    return pass_time, place
 
 
 @kernel

@@ -5,8 +5,6 @@ A start in Python sums with numpy; the same start in a page must round in the sa
 
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["DEPTH", "pairwise_sum"]
-
 DEPTH = 64
 """Largest number of pieces that wait at once: more than any number of molecules can be halved."""
 _PIECE, _LANES = 128, 8

@@ -12,8 +12,6 @@ from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.engine.liquid.reservoir import LIQUID, RAINED
 from atmosbox.lab.kernels.in_gas import is_away
 
-__all__ = ["Picture", "picture"]
-
 _FINEST, _FASTEST = 65535, 255
 
 

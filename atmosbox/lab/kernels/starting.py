@@ -19,13 +19,9 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.layout import write_column
 from atmosbox.engine.exact.rows import LONGEST
 from atmosbox.engine.liquid.moist_loop import moist_loop
-from atmosbox.engine.start.clearing import clear
+from atmosbox.engine.start.overlap import clear
 from atmosbox.engine.start.scatter import SERIES, crowd, scatter
 from atmosbox.lab.kernels.pairwise import pairwise_sum
-
-__all__ = [
-    "ALONG_X", "AS_PLACED", "AT_RANDOM", "PLACES", "SPINS", "VELOCITIES", "Cleared", "Start", "can_start", "starting",
-]  # fmt: skip
 
 PLACES, VELOCITIES, SPINS = range(3)
 """The parts of a start that are drawn: positions, velocities, rotational energies."""

@@ -11,8 +11,6 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.scene.instruments.mixing import PRIOR
 
-__all__ = ["Mixture", "mixing"]
-
 
 class Mixture(NamedTuple):
     """The data of two gases that mix; all arrays are empty in a scene without such gases.

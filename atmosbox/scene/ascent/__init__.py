@@ -4,8 +4,7 @@ from atmosbox.scene.ascent.convection import convection_headlines
 from atmosbox.scene.ascent.display import atmosphere_panel, lifted_headlines, lifted_panels, lifted_theory
 from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
 from atmosbox.scene.ascent.launch import rise
-from atmosbox.scene.ascent.limit import refuse_descent, refuse_supersaturation
-from atmosbox.scene.ascent.way import MoistAscent
+from atmosbox.scene.ascent.way import MoistAscent, refuse_descent, refuse_supersaturation
 
 __all__ = [
     "MoistAscent",

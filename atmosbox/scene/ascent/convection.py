@@ -23,8 +23,6 @@ from atmosbox.scene.headline import Headline
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["convection_headlines"]
-
 Array = NDArray[np.float64]
 _NEAR = 4
 """Number of frames on either side that smooth one frame."""

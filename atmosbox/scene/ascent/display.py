@@ -19,8 +19,6 @@ from atmosbox.scene.panels import Line, Panel
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["atmosphere_panel", "lifted_headlines", "lifted_panels", "lifted_theory"]
-
 Array = NDArray[np.float64]
 BLOCK = 7
 """Number of frames over which a temperature is averaged before it is compared with the adiabat."""

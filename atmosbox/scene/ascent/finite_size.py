@@ -17,12 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
 from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
-from atmosbox.scene.ascent.raining import walk
+from atmosbox.scene.ascent.random_walk import entropy_gain, gathered, walk
 from atmosbox.scene.ascent.way import MoistAscent
-
-__all__ = ["Drift", "comparable", "drift", "least_cloud", "rain_scatter", "rained"]
 
 Array = NDArray[np.float64]
 

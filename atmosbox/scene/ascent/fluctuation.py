@@ -18,12 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent.dissipation import gathered
 from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
-from atmosbox.scene.ascent.raining import walk
+from atmosbox.scene.ascent.random_walk import gathered, walk
 from atmosbox.scene.ascent.way import MoistAscent
-
-__all__ = ["along_frames", "temperature_covariance", "vapour_covariance"]
 
 Array = NDArray[np.float64]
 

@@ -15,10 +15,8 @@ from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
 from atmosbox.scene.knob import altitude, way
 from atmosbox.scene.moisture import water
 from atmosbox.scene.piston import CLOSING, moist_parcel, parcel_facts
-from atmosbox.scene.rounding import rounded
 from atmosbox.scene.setup import Setup
-
-__all__ = ["rise"]
+from atmosbox.scene.units import rounded
 
 Array = NDArray[np.float64]
 Profile = Callable[[float], float]

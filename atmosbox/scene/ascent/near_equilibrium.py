@@ -27,8 +27,6 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
 
-__all__ = ["Cloud", "cloud_along"]
-
 Array = NDArray[np.float64]
 _CARRIED = np.array([[1.0, 3.5], [3.5, 3.5**2 + 3.5]])
 """Means of 1, e and e^2 for a molecule that hits a droplet: its energy e has mean 7/2 kT and variance 7/2 (kT)^2."""

@@ -1,4 +1,6 @@
-"""The ascent of a parcel of moist air according to theory."""
+"""The ascent of a parcel of moist air according to theory, and checks of its settings."""
+
+from __future__ import annotations
 
 import functools
 import math
@@ -8,19 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
+from atmosbox.errors import Setting, SettingError
 from atmosbox.scene.moisture import nuclei_heat_capacity, vapour_molecules
 from atmosbox.scene.piston import free_time_of, size_of_parcel
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-
-__all__ = ["RAIN", "MoistAscent"]
 
 Array = NDArray[np.float64]
 FLATNESS = 0.1
 """Height of the box over its width at the start.
 
 The droplets flow with the air, the faster the higher they are, and the random pushes of the molecules on them do random
-work: there is less of it in a low box, see `atmosbox.scene.ascent.dissipation`.
+work: there is less of it in a low box, see `atmosbox.scene.ascent.random_walk`.
 """
 RAIN = 0.05
 """Rate at which each molecule in excess of what the cloud holds falls out as rain, per mean free time at the start.
@@ -156,3 +157,61 @@ class MoistAscent:
         """Pressures at which the temperature is compared with the adiabat [Pa]."""
         shown = dict.fromkeys((85_000.0, 70_000.0, 50_000.0, self.top_pressure))
         return tuple(p for p in shown if self.top_pressure <= p < self.pressure)
+
+
+def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "the pressure at the ground") -> None:
+    """Refuse an ascent that does not go up.
+
+    Parameters
+    ----------
+    top_pressure, ground_pressure
+        Pressure at the end and at the start of the ascent [hPa].
+    ground
+        Name of the pressure at the start, for the message.
+
+    Raises
+    ------
+    SettingError
+        If the top is less than 2 % below the ground.
+
+    Examples
+    --------
+    >>> refuse_descent(990.0, 1000.0)
+    Traceback (most recent call last):
+        ...
+    atmosbox.errors.SettingError: top_pressure = 990 hPa is not below the pressure at the ground, 1000 hPa:
+    give top_pressure="300hPa".
+    """
+    if top_pressure > 0.98 * ground_pressure:
+        raise SettingError(
+            "top_pressure",
+            f"{top_pressure:g} hPa",
+            f"is not below {ground}, {ground_pressure:g} hPa",
+            Setting("top_pressure", f"{0.3 * ground_pressure:.0f}hPa"),
+        )
+
+
+def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
+    """Refuse a dewpoint above the temperature, both in degC.
+
+    Raises
+    ------
+    SettingError
+        If the air holds more vapour than saturation.
+
+    Examples
+    --------
+    >>> refuse_supersaturation(26.0, 25.0)
+    Traceback (most recent call last):
+    ...
+    atmosbox.errors.SettingError: dewpoint = 26 degC is above the temperature, 25 degC:
+    such air is in its cloud already: give dewpoint="25degC" for saturated air.
+    """
+    if dewpoint > temperature:
+        raise SettingError(
+            "dewpoint",
+            f"{dewpoint:g} degC",
+            f"is above the temperature, {temperature:g} degC: such air is in its cloud already",
+            Setting("dewpoint", f"{temperature:g}degC"),
+            " for saturated air",
+        )

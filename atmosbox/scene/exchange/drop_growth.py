@@ -12,8 +12,6 @@ from atmosbox import theory as law
 from atmosbox.scene.exchange.moist_box import MoistBox
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
-__all__ = ["DropGrowth", "DropKind"]
-
 Array = NDArray[np.float64]
 
 

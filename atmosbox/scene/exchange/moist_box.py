@@ -11,11 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox import theory as law
 from atmosbox.scene.moisture import vapour_molecules
-from atmosbox.scene.rounding import rounded
-from atmosbox.scene.units import Scale
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-
-__all__ = ["MoistBox"]
 
 
 @dataclass(frozen=True)

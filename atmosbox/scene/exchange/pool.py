@@ -1,24 +1,25 @@
-"""Air over a pool at constant pressure, according to theory: its equilibrium, and the time to reach it."""
+"""Air over a pool at constant pressure, according to theory: its equilibrium, and the molecules that leave the pool."""
 
 from __future__ import annotations
 
 import functools
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine.core.lift import stiffness
+from atmosbox.scene.headline import Headline
 from atmosbox.scene.moisture import vapour_molecules
 from atmosbox.scene.piston import size_of_parcel
-from atmosbox.scene.rounding import rounded
-from atmosbox.scene.units import Scale
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
-__all__ = ["AirOverPool"]
+if TYPE_CHECKING:
+    import xarray as xr
 
 FLATNESS = 0.3
 """Height of the box over its width: in a flatter box every molecule hits the pool more often."""
@@ -160,3 +161,50 @@ class AirOverPool:
         doi:10.1103/PhysRevLett.78.2690).
         """
         return math.sqrt(2.0 * self.rest.temperature * self.loss(time) / self.heat_capacity)
+
+
+def temperature_of_those_that_left(dataset: xr.Dataset) -> float:
+    """Return the mean temperature of the liquid at the moments when molecules left it [K]; NaN if none did.
+
+    If the liquid has no temperature in some frames, that of the gas is taken: a pool that disappears now and then
+    consists of a molecule or two that came from the gas, and has its temperature.
+    """
+    always = bool(np.isfinite(dataset.liquid_temperature.values).all())
+    warm = (dataset.liquid_temperature if always else dataset.gas_temperature).values
+    rate = dataset.evaporation_rate.values
+    return float(np.average(warm, weights=rate)) if rate.any() else math.nan
+
+
+def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int) -> tuple[Headline, ...]:
+    """Return the mean energy of the molecules that leave, if many have left a pool of many molecules.
+
+    Parameters
+    ----------
+    dataset
+        The run.
+    start
+        The air over its pool.
+    few
+        Least number of molecules that must have left, and of molecules in the pool.
+    """
+    left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
+    if min(left, start.pool) < few or not np.isfinite(dataset.liquid_temperature.values).all():
+        return ()
+    warm = temperature_of_those_that_left(dataset)
+    middle, width = dataset.energy.values, np.diff(dataset.energy_bnds.values)[:, 0]
+    share = dataset.leaving_energy_probability_density.values * width
+    mean = float(middle @ share)
+    flux = BOLTZMANN * law.LEAVING_FREEDOM * warm
+    return (
+        Headline(
+            "energy_of_those_that_leave",
+            mean,
+            math.sqrt(float((middle - mean) ** 2 @ share) / left),
+            BOLTZMANN * law.BINDING_TEMPERATURE + flux,
+            flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
+            "molecules leave a pool of few molecules mostly while it is warm by chance",
+            "J",
+            "zJ",
+            "energy of leaving molecules",
+        ),
+    )

@@ -8,19 +8,16 @@ units, by the names that `atmosbox.file.variables` declares.
 from atmosbox.scene.instruments.air import Air
 from atmosbox.scene.instruments.condensate import Clusters
 from atmosbox.scene.instruments.disc_motion import Discs
-from atmosbox.scene.instruments.drop_size import DropSizes
-from atmosbox.scene.instruments.emitted import Leaving
+from atmosbox.scene.instruments.drops import DropSizes, Nuclei
 from atmosbox.scene.instruments.flow import Flow
 from atmosbox.scene.instruments.instrument import Instrument, Readings
 from atmosbox.scene.instruments.layer import Layers
-from atmosbox.scene.instruments.lifted_air import Environment, Lift
+from atmosbox.scene.instruments.lifted_air import Environment, Lift, MoistLift
 from atmosbox.scene.instruments.mixing import MOMENTS, Mixing
-from atmosbox.scene.instruments.moist_lift import MoistLift
 from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
-from atmosbox.scene.instruments.nucleus import Nuclei
 from atmosbox.scene.instruments.slab import Slab
 from atmosbox.scene.instruments.speeds import Speeds
-from atmosbox.scene.instruments.water import Water
+from atmosbox.scene.instruments.water import Leaving, Water
 
 __all__ = [
     "LAWS",

@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import Parcel, Snapshot
-from atmosbox.engine.core.energy_budget import GIVEN, STORES
+from atmosbox.engine.core.account import GIVEN, STORES
 from atmosbox.engine.core.measure import temperature
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
-
-__all__ = ["Air", "open_faces"]
 
 Array = NDArray[np.float64]
 _ALWAYS = {"kinetic_energy", "rotational_energy", "potential_energy", "heat_from_wall", "work_by_piston"}

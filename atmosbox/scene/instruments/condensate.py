@@ -12,8 +12,6 @@ from atmosbox.engine.core.measure import temperature
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 
-__all__ = ["CROWDED", "Clusters", "drops_of"]
-
 CROWDED = 5
 """Least number of wells of a molecule that counts as liquid: in vapour it is in one or two wells, in a drop in ten."""
 

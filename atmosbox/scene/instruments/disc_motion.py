@@ -12,8 +12,6 @@ from atmosbox.engine.core.measure import momentum
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 
-__all__ = ["Discs"]
-
 Array = NDArray[np.float64]
 
 

@@ -14,8 +14,6 @@ from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
-__all__ = ["CORE", "LOW", "MODES", "Flow"]
-
 Array = NDArray[np.float64]
 
 CORE = (0.299, 0.701)

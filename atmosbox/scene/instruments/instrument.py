@@ -7,8 +7,6 @@ from typing import Any, Protocol
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.scene.units import Scale
 
-__all__ = ["Instrument", "Readings"]
-
 
 class Readings(dict[str, Any]):
     """Variables and coordinates by name, in SI units."""

@@ -14,8 +14,6 @@ from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.statistics import average_beside, block_average
 from atmosbox.scene.units import Scale
 
-__all__ = ["Layers"]
-
 Array = NDArray[np.float64]
 _BLOCKS = 20
 

@@ -13,8 +13,6 @@ from atmosbox.engine import Parcel, Snapshot
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 
-__all__ = ["MOMENTS", "PRIOR", "Mixing", "expected_share"]
-
 Array = NDArray[np.float64]
 Counts = NDArray[np.integer]
 

@@ -12,8 +12,6 @@ from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import DRY_AIR, WATER
 
-__all__ = ["LAWS", "Molecules", "wall_laws"]
-
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 

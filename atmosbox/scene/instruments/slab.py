@@ -14,8 +14,6 @@ from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
-__all__ = ["Slab", "inner_and_outer"]
-
 Array = NDArray[np.float64]
 
 _BIN = 0.25

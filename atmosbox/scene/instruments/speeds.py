@@ -11,8 +11,6 @@ from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import Scale
 
-__all__ = ["Speeds"]
-
 Array = NDArray[np.float64]
 
 

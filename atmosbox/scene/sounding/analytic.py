@@ -11,8 +11,6 @@ from atmosbox.errors import SettingError
 from atmosbox.scene.sounding.profile import Sounding
 from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
 
-__all__ = ["weisman_klemp"]
-
 _DRY_GAS = GAS_CONSTANT / DRY_AIR.molar_mass  # J kg-1 K-1
 _HEAT = 3.5 * _DRY_GAS  # J kg-1 K-1, at constant pressure
 _EPSILON = WATER.molar_mass / DRY_AIR.molar_mass

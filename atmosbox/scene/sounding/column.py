@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import SIGNS, Unit, known_unit
 
-__all__ = ["QUANTITIES", "Measure", "Place", "Table", "check_plausible", "in_si", "number", "stated_columns", "unit_of"]
-
 _HIGHEST_GROUND = 450e2  # Pa; the highest stations, in Tibet, report some 550 hPa
 
 Floats = NDArray[np.float64]

@@ -17,8 +17,6 @@ import numpy as np
 from atmosbox.errors import SoundingError
 from atmosbox.scene.sounding.column import QUANTITIES, Table, number, stated_columns
 
-__all__ = ["FORMATS", "Text"]
-
 _UNITS: Mapping[str, str | None] = {"pressure": "hPa", "temperature": "degC", "dewpoint": "degC"}
 
 

@@ -14,8 +14,6 @@ from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.sounding.profile import Sounding
 from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
-__all__ = ["Indices", "Level", "hydrostatic_height", "indices"]
-
 
 class Level(NamedTuple):
     """A level that a lifted parcel meets.

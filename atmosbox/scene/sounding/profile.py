@@ -14,8 +14,6 @@ from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.sounding.column import QUANTITIES, Place, check_plausible
 
-__all__ = ["Sounding", "check_levels", "widest_gap"]
-
 FEWEST_LEVELS = 5
 """Smallest number of levels of a sounding."""
 LARGEST_GAP = 250e2

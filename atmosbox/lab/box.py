@@ -1,0 +1,371 @@
+"""A box with its instruments and picture, as the arrays that the kernels of a page work on."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine import AttractingParcelSet, ParcelSet
+from atmosbox.engine.core.state import EVENT, MOLECULE, Gas, Modes, aligned_records
+from atmosbox.engine.exact.advance import Book
+from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.exact.cells import ROW
+from atmosbox.engine.exact.layout import NUMBER, PLACES, Layout, describe, new_cells
+from atmosbox.engine.exact.rows import FEWEST, LONGEST, MOST, row_stride
+from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from atmosbox.errors import SettingError
+from atmosbox.lab.kernels.averaging import BLOCKS, Average
+from atmosbox.lab.kernels.flowing import Flow as Wind
+from atmosbox.lab.kernels.flowing import can_flow
+from atmosbox.lab.kernels.gauging import Gauges
+from atmosbox.lab.kernels.picture import Picture
+from atmosbox.lab.kernels.starting import Start
+from atmosbox.lab.kernels.two_gases import Mixture
+from atmosbox.lab.moist_box import hygrometer, liquid_picture
+from atmosbox.lab.start_plan import is_drawn, start_of
+from atmosbox.lab.wasm_module import elsewhere, module_name
+from atmosbox.lab.well_box import crowd, lists, well_gas
+from atmosbox.page import NEIGHBOURS
+from atmosbox.scene.instruments import (
+    MOMENTS,
+    Air,
+    Clusters,
+    Discs,
+    Flow,
+    Layers,
+    Leaving,
+    Lift,
+    Mixing,
+    MoistLift,
+    Nuclei,
+    Speeds,
+    Water,
+)
+from atmosbox.scene.instruments.flow import LOW, modes_of_flow
+from atmosbox.scene.instruments.mixing import expected_share
+from atmosbox.simulation.preparation import Prepared, build
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from atmosbox.page import Stage
+    from atmosbox.scene.setup import Setup
+    from atmosbox.scene.units import Scale
+
+_CORNERS = 4
+_SPARE = 1.5
+_LONGER = 4
+"""Factor by which the rows of cells can grow, because memory is reserved for that."""
+_INSTRUMENTS = (Air, Clusters, Discs, Flow, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
+_BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
+_READINGS = 64
+_DENSITIES = 129
+"""Number of densities at which the adiabatic lapse rate over gravity is tabulated, up to that at which discs freeze."""
+_FRESH = 0.2
+"""Share by which the newest frame counts in the wind that is drawn."""
+
+
+class LabBox(NamedTuple):
+    """A box at its start, as the arrays and settings of a page.
+
+    ``layers`` is the average of the profiles by height, one quantity after the other, and ``speeds`` the average of the
+    shares of molecules by speed; they are empty in a scene that does not show them. If molecules attract each other,
+    ``gas`` and ``layout`` are those of `well_lab_box`, and ``crowd`` holds the data of the drops; otherwise it is 0.
+    ``start`` says how molecules are placed with another seed, if ``seeded``.
+    """
+
+    prepared: Prepared
+    setup: Setup
+    gas: Any
+    ascent: Any
+    book: Book
+    layout: Any
+    gauges: Gauges
+    speeds: Average
+    layers: Average
+    picture: Picture
+    crowd: Any
+    start: Start | None
+    seeded: bool
+
+    @property
+    def modes(self) -> Modes:
+        """What the scene requires of the engine."""
+        modes: Modes = self.setup.parcel.arrays().modes  # type: ignore[attr-defined]
+        return modes
+
+    @property
+    def attracts(self) -> bool:
+        """Whether molecules attract each other."""
+        return isinstance(self.setup.parcel, AttractingParcelSet)
+
+    @property
+    def module(self) -> str:
+        """The name of the module that contains the kernels of this box."""
+        return module_name(self.modes, wells=self.attracts)
+
+    @property
+    def warmed(self) -> tuple[int, int]:
+        """The range of walls that a knob warms, first and last + 1: all six, or the four sides if there is a piston."""
+        return (0, 6) if not self.modes.piston else (0, 4)
+
+
+def refuse(prepared: Prepared, setup: Setup) -> None:
+    """Refuse a box for which there is no module.
+
+    Raises
+    ------
+    SettingError
+        If there is no module for the box; the message says what to use instead.
+    """
+    parcel: Any = setup.parcel
+    unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
+    if not _is_measured(_of(setup, Flow), _of(setup, Layers), parcel):
+        unknown.append(Flow.__name__)
+    why = None
+    if str(prepared.engine) != "exact":
+        why = "runs in the page with the exact engine alone"
+    elif type(parcel) not in _BOXES:
+        why = "has an engine of its own, which is not compiled for the page"
+    elif parcel.driver is not None and parcel.arrays().ascent is None:
+        why = "moves its piston in a way that is not compiled for the page"
+    elif unknown:
+        why = f"has an instrument that is not compiled for the page, {unknown[0]}"
+    if why is not None:
+        raise SettingError("scene", prepared.scene, why, *elsewhere(prepared.scene))
+
+
+def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
+    """Return whether there is no wind, or a wind that kernels can measure in the parts of the layers."""
+    if flow is None:
+        return True
+    parts = None if layers is None else (layers.number, layers.columns)
+    return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow.shape == parts
+
+
+def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> LabBox:
+    """Return the box of a scene for a page.
+
+    Parameters
+    ----------
+    prepared
+        The scene.
+    picture
+        Function that returns what the page shows of a box; without it three molecules are shown, enough to compile.
+
+    Raises
+    ------
+    AtmosboxError
+        If the box cannot be built, or cannot run in a page.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.counts.size
+    58
+    """
+    setup = build(prepared)
+    refuse(prepared, setup)
+    parcel: Any = setup.parcel
+    arrays = parcel.arrays()
+    stage = None if picture is None else picture(setup)
+    attracts = type(parcel) is AttractingParcelSet
+    layout: Any = lists(parcel) if attracts else _layout(arrays)
+    box = LabBox(
+        prepared,
+        setup,
+        well_gas(parcel) if attracts else _gas(arrays, layout),
+        _ascent(arrays.ascent),
+        arrays.book,
+        layout,
+        _gauges(prepared, setup),
+        *_averages(setup),
+        _picture(parcel, setup.scale, stage),
+        crowd(setup) if attracts else 0,
+        start_of(parcel, layout),
+        is_drawn(parcel),
+    )
+    return _without_molecules(box) if box.seeded else box
+
+
+def _without_molecules(box: LabBox) -> LabBox:
+    """Return a box without its molecules, which the kernel ``start`` is to draw: the page gets smaller."""
+    molecules = aligned_records(box.gas.molecules.size, MOLECULE)
+    molecules[:] = box.gas.molecules
+    in_gas = molecules[: box.setup.parcel.number]  # after these follow the molecules of the liquid, and the drops
+    for name in ("x", "y", "z", "vx", "vy", "vz"):
+        in_gas[name] = 0.0
+    kinds = box.gas.kinds._replace(rotational_energy=np.zeros_like(box.gas.kinds.rotational_energy))
+    return box._replace(gas=box.gas._replace(molecules=molecules, kinds=kinds))
+
+
+def _layout(arrays: Any) -> Layout:
+    """Return the layout of the cells before molecules are placed, with memory for other cells."""
+    old, modes = arrays.layout, arrays.modes
+    shape = old.shape.copy()
+    column: Any = old.column if modes.gravity and modes.rows else 0
+    shape[PLACES] = FEWEST if modes.rows else ROW - 1
+    numbers = shape[NUMBER : NUMBER + 3]
+    most = max(*numbers[:2], column.count.size) if column else int(_SPARE * max(numbers))
+    edge = np.zeros((3, most + 3))
+    edge[:, : old.edge.shape[1]] = old.edge
+    layout: Layout = old._replace(shape=shape, filled=old.filled.copy(), edge=edge, column=column)
+    return layout
+
+
+def _gas(arrays: Any, layout: Layout) -> Gas:
+    """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if needed."""
+    cells, number, modes = arrays.gas.cells, arrays.gas.molecules.size, arrays.modes
+    many = math.prod(layout.shape[NUMBER : NUMBER + 3].tolist())
+    if layout.column:
+        many = cells.number_x * cells.number_y * layout.column.count.size
+    elif modes.piston:
+        many = int(_SPARE * many)
+    words = many * (row_stride(MOST, modes.mixed) if modes.rows else _LONGER * cells.stride)
+    events, most = aligned_records(number, EVENT), layout.edge.shape[1] - 1
+    made = new_cells(events, layout.radius.size, words, most, cells.copies.radius, float(cells.copies.epoch[LONGEST]))
+    gas: Gas = arrays.gas._replace(events=events, cells=made, calendar=new_calendar(number))
+    if not modes.rows:
+        return gas._replace(cells=made._replace(boundary=cells.boundary, first=cells.first, span=cells.span))
+    describe(gas, layout, modes)
+    return gas
+
+
+def _ascent(ascent: Any) -> Any:
+    """Return the data that control the piston, with memory for a course changed by hand; 0 for a box without ascent."""
+    if ascent is None:
+        return 0
+    lift = ascent.lift
+    time, moment = np.full(_CORNERS, math.inf), np.full(_CORNERS, lift.course_moment[-1])
+    time[: lift.course_time.size], moment[: lift.course_time.size] = lift.course_time, lift.course_moment
+    # the energy at the start is kept in `Book`
+    return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment), start_energy=0.0)
+
+
+def _of(setup: Setup, kind: type) -> Any:
+    return next((each for each in setup.instruments if type(each) is kind), None)
+
+
+def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
+    """Return the data of the instruments at their start, with memory for further readings."""
+    air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
+    edges = np.zeros(1) if speeds is None else speeds.edges
+    number = 0 if layers is None else layers.number
+    half = np.zeros(0, np.int64)
+    if discs is not None:
+        mass = setup.parcel.mass
+        half = np.ones(mass.size, np.int64)
+        half[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
+    return Gauges(
+        reading=np.zeros(_READINGS),
+        warmth=np.zeros(2),
+        before=np.zeros(8),
+        barometer=0 if air is None or air.barometer == "all" else 4,
+        edges=edges,
+        counts=np.zeros(edges.size - 1),
+        speeds=np.zeros(edges.size - 1),
+        sums=np.zeros((4, number)),
+        layers=np.zeros(5 * number),
+        scratch=np.zeros((6, number if layers is None else number * layers.columns)),
+        half=half,
+        running=np.zeros(8),
+        mixture=_mixture(setup),
+        water=hygrometer(prepared, setup),
+        flow=_wind(setup),
+    )
+
+
+def _wind(setup: Setup) -> Any:
+    """Return the data of the wind; empty arrays in a scene that does not measure it, 0 if no kernel can."""
+    flow, parcel = _of(setup, Flow), setup.parcel
+    if not can_flow(parcel.arrays().modes):  # type: ignore[attr-defined]
+        return 0
+    rows, columns = (0, 0) if flow is None else flow.shape
+    high, phases, lapse, dense = np.zeros(0), np.zeros((0, 0)), np.zeros(2), 1.0
+    if flow is not None:
+        high, across = modes_of_flow(rows, columns, periodic=parcel.periodic[0])
+        phases = np.concatenate(across)
+        gas = law.Gas(2 if parcel.planar else 3, float(parcel.diameter[0]))
+        dense = law.FREEZING_PACKING_FRACTION_DISCS / float(law.packing_fraction_discs(1.0, gas.diameter))
+        lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), 1.0))
+    return Wind(
+        sums=np.zeros((3, rows * columns)),
+        upright=np.zeros(rows * columns),
+        total=np.zeros(4),
+        high=high,
+        wave=phases,
+        column=np.zeros((2, columns)),
+        tagged=np.zeros(0 if flow is None else parcel.number, np.int64),
+        release=0 if flow is None else flow.release,
+        low=LOW * float(parcel.length[2]),
+        near=LOW if flow is not None and flow.chimney else 1.0,
+        wind=np.zeros((2, rows * columns)),
+        fresh=_FRESH,
+        lapse=lapse,
+        dense=dense,
+        adiabat=np.full(rows, math.nan),
+    )
+
+
+def _mixture(setup: Setup) -> Mixture:
+    """Return the data of two gases that mix; empty arrays in a scene without them."""
+    instrument, parcel = _of(setup, Mixing), setup.parcel
+    moments = [] if instrument is None else list(instrument.moments.values())
+    bins = 0 if instrument is None else instrument.bins
+    known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument.moments]
+    radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
+    return Mixture(
+        right=np.zeros(0, np.int64) if instrument is None else instrument.right.astype(np.int64),
+        low=radius,
+        width=float(parcel.length[0]) - 2.0 * radius,
+        moments=np.array(moments, float),
+        frame=setup.frame,
+        off=np.full(len(moments), math.inf),
+        expected=np.concatenate([np.zeros(0), *(each[0] for each in known)]),
+        scatter=np.concatenate([np.zeros(0), *(each[1] for each in known)]),
+        mean=np.full(len(moments) * bins, math.nan),
+        error=np.full(len(moments) * bins, math.nan),
+        counts=np.zeros((2, bins)),
+    )
+
+
+def _averages(setup: Setup) -> tuple[Average, Average]:
+    """Return the averages of the shares by speed, and of the profiles by height.
+
+    A block of the profiles is twice as long as the correlation time of the column's energy, so that blocks are nearly
+    independent.
+    """
+    speeds, layers = _of(setup, Speeds), _of(setup, Layers)
+    shares = 0 if speeds is None else speeds.edges.size - 1
+    profiles = 0 if layers is None else 5 * layers.number
+    memory = 0.0 if layers is None else layers.memory
+    return _average(shares, 1), _average(profiles, max(1, math.ceil(2.0 * memory / setup.frame)))
+
+
+def _average(number: int, frames: int) -> Average:
+    return Average(
+        np.zeros((BLOCKS + 1, number)),
+        np.array([0, 0, frames, frames]),
+        np.full(number, np.nan),
+        np.full(number, np.nan),
+    )
+
+
+def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:
+    shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
+    highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
+    if isinstance(parcel, AttractingParcelSet):
+        highest = NEIGHBOURS
+    return Picture(
+        shown,
+        np.zeros(3),
+        np.zeros((shown.size, 3), np.uint16),
+        np.zeros(shown.size, np.uint8),
+        highest,
+        np.zeros(shown.size, np.uint8),
+        *liquid_picture(parcel, scale, stage),
+    )

@@ -1,0 +1,147 @@
+"""The kernels that knobs call: gravity, and the walls and the pool of a box with liquid.
+
+Change gravity while a box runs: what `ParcelSet.set_gravity` does.
+
+Gravity is a number among the arguments of each kernel that moves molecules. The kernel here uses the old one. It brings
+all molecules to the present and chooses layers of cells; then the page writes the new gravity into the arguments of all
+kernels, and calls ``place``.
+"""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.walls import HEAT_BATH, SPECULAR
+from atmosbox.engine.exact.advance import Passed
+from atmosbox.engine.exact.encounter import kind_of
+from atmosbox.engine.exact.layout import Column, Layout, write_column
+from atmosbox.engine.liquid.moist_loop import moist_loop
+from atmosbox.engine.liquid.reservoir import cover
+from atmosbox.lab.kernels.gauging import ENERGY
+from atmosbox.lab.kernels.pairwise import pairwise_sum
+from atmosbox.lab.kernels.starting import can_start
+
+
+def has_moist_knobs(modes: Modes) -> bool:
+    """Return whether a box with liquid has knobs: one with visible drops or with a rising cloud has none."""
+    return not modes.drops and (modes.pool or not modes.ascends)
+
+
+@functools.cache
+def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
+    """Return the kernels that knobs of a box with liquid call, by name."""
+    if not has_moist_knobs(modes):
+        return {}
+    _, draw, wake = moist_loop(modes)
+
+    @kernel
+    def warm_walls(gas, book, first, last, kT):
+        """Make walls heat baths of a temperature [energy]: see `set_wall`, and `set_wall_kT` for present heat baths."""
+        walls = gas.walls
+        wake(gas, book, math.sqrt(8.0 * kT / gas.kinds.table[book.moisture.reservoir.kind].mass))
+        for wall in range(first, last):
+            walls.law[wall] = HEAT_BATH
+            walls.accommodation[wall] = 1.0
+            for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
+                walls.schedule_kT[k] = kT
+        return 0
+
+    @kernel
+    def smooth_walls(gas, first, last):
+        """Make heat baths smooth walls again."""
+        walls = gas.walls
+        for wall in range(first, last):
+            walls.law[wall] = SPECULAR
+            walls.accommodation[wall] = 0.0
+        return 0
+
+    @kernel
+    def cover_pool(gas, book, share):
+        """Set the share of the pool that is open: see `MoistAccount.set_open_pool`."""
+        cover(book.moisture.reservoir, share)
+        draw(gas, book, book.moisture.reservoir.bound[0])
+        return 0
+
+    found = {"warm_walls": warm_walls, "smooth_walls": smooth_walls}
+    return found | ({"cover_pool": cover_pool} if modes.pool else {})
+
+
+def can_set_gravity(modes: Modes) -> bool:
+    """Return whether a page can change gravity in boxes of a set of modes: columns of one gas without a piston."""
+    return modes.gravity and modes.rows and can_start(modes) and not (modes.piston or modes.mixed or modes.phases)
+
+
+@kernel
+def _remainder(x, side):
+    """Return x modulo a side of the box, as numpy computes it: all steps but the last sum are exact."""
+    left, step = abs(x), side
+    while 2.0 * step <= left:
+        step *= 2.0
+    while step >= side:
+        left -= step if left >= step else 0.0
+        step *= 0.5
+    return left if x >= 0.0 or left == 0.0 else side - left
+
+
+@kernel
+def _inside(x, side, inverse):
+    """Return a coordinate inside of a periodic box."""
+    if inverse == 0.0:
+        return x
+    # once more, because a tiny negative coordinate first becomes that of the other side
+    return _remainder(_remainder(x, side), side)
+
+
+@functools.cache
+def gravity_setter(modes: Modes) -> Callable[..., Any]:
+    """Return the kernel ``set_gravity`` of one set of modes."""
+
+    @kernel
+    def bring_to_now(gas, now):
+        """Give every molecule its present position and velocity; return the sum of mass times height."""
+        box, heights = gas.box, 0.0
+        for i in range(gas.molecules.size):
+            molecule = gas.molecules[i]
+            mass, _, _ = kind_of(i, gas, modes)
+            dt = now - molecule.clock
+            z = molecule.z + dt * molecule.vz - 0.5 * box.gravity * dt * dt
+            molecule.x = _inside(molecule.x + dt * molecule.vx, box.length_x, box.inverse_x)
+            molecule.y = _inside(molecule.y + dt * molecule.vy, box.length_y, box.inverse_y)
+            molecule.z = z
+            molecule.vz -= box.gravity * dt
+            molecule.clock = now
+            heights += mass * z
+        return heights
+
+    @kernel
+    def warmth(gas, begun):
+        """Return kT of the molecules or of the warmest wall, whichever is higher: see `ParcelSet`."""
+        number, walls = gas.molecules.size, gas.walls
+        for i in range(number):
+            molecule = gas.molecules[i]
+            mass, _, _ = kind_of(i, gas, modes)
+            square = molecule.vx * molecule.vx + molecule.vy * molecule.vy + molecule.vz * molecule.vz
+            begun.key[i] = mass * square
+        kinetic = 0.5 * pairwise_sum(begun.key, number, begun.waiting, begun.partial)
+        kT = 2.0 * kinetic / ((2.0 if gas.box.planar else 3.0) * number)
+        for wall in range(6):
+            if walls.law[wall] == HEAT_BATH:
+                kT = max(kT, walls.schedule_kT[walls.schedule[wall]])
+        return kT
+
+    @kernel
+    def set_gravity(gas, book, begun, gauges, gravity):
+        """Prepare the box for another gravity [length/time^2]; return ``DONE``, or ``FULL`` if memory is too short."""
+        gauges.before[ENERGY] += (gravity - gas.box.gravity) * bring_to_now(gas, book.now[0])
+        kT, layout = warmth(gas, begun), begun.layout
+        c = layout.column
+        weight = begun.weight / gas.molecules.size * gravity
+        column = Column(weight, kT, c.wanted, c.thinnest, c.count, c.old)
+        other = Layout(layout.shape, layout.due, layout.filled, layout.edge, layout.radius, column)
+        return Passed.DONE.value if write_column(kT, gas, other, modes) else Passed.FULL.value
+
+    made: Callable[..., Any] = set_gravity
+    return made

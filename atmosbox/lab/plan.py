@@ -1,0 +1,375 @@
+"""The plan of a page, as JSON: the addresses, units and meanings of the data in the memory of its engine."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox.file.variables import known
+from atmosbox.lab.box import LabBox, lab_box
+from atmosbox.lab.drawing import drawing
+from atmosbox.lab.kernels.gauging import Reading
+from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.kernels.knobs import can_set_gravity
+from atmosbox.lab.memory_image import BASE, Image, arguments, image
+from atmosbox.lab.moist_plan import (
+    DROP_STATE,
+    WET_STATE,
+    fixed_axes,
+    leaving_energies,
+    planned_alone,
+    water_readings,
+)
+from atmosbox.lab.stage import COLDER, lab_stage, plain, running_panels
+from atmosbox.lab.theory_table import short_run, show_plan, tables
+from atmosbox.lab.wasm_module import SCENES
+from atmosbox.lab.well_box import drop_readings, has_bath
+from atmosbox.page import ROUND
+from atmosbox.page.controls import gauges, knob_controls
+from atmosbox.page.lesson import lesson_of
+from atmosbox.page.panel import declared
+from atmosbox.scene.conversion import declared_unit
+from atmosbox.scene.instruments import MOMENTS, Lift, Nuclei
+from atmosbox.simulation.link import link_start
+from atmosbox.simulation.preparation import Prepared
+from atmosbox.theory.constants import BOLTZMANN
+
+if TYPE_CHECKING:
+    from atmosbox.page import Stage
+    from atmosbox.scene.panels import Panel
+    from atmosbox.scene.setup import Setup
+
+STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
+"""The arrays that are equal, to the last bit, if two boxes are in the same state."""
+
+_CROSSINGS, _SLOWLY = 4.0, 1.6
+"""Times that a molecule crosses the box in a second at the usual pace, and the same where drops soon vanish."""
+_WHOLE = 60.0
+"""Least time that the usual pace takes for a whole run [s]."""
+_SOON = 30.0
+"""The same for air that turns over, so that rolls are soon seen, and the time that an ascent takes [s]."""
+_TIME = "elapsed_time"
+_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_SLOWEST = 0.15
+"""Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
+_FIGURES = 4
+"""Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
+_KNOBS = (
+    "temperature", "floor_temperature", "ceiling_temperature", "gravity", "altitude", "way", "open_pool", "attraction",
+)  # fmt: skip
+_AT_REST = "layer_temperature_conduction"
+"""The temperature of air at rest between the walls of the start; it ends when a knob is turned."""
+_WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
+
+
+def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
+    """Return the plan of the page of a scene, the memory of its engine, and the box.
+
+    Raises
+    ------
+    AtmosboxError
+        If the box cannot be built, or cannot run in a page.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> plan, memory, _ = lab_plan(prepare("temperature", {"molecules": 20}))
+    >>> plan["molecules"], plan["size"] == memory.size, sorted(plan["knobs"])
+    (20, True, ['temperature'])
+    """
+    panels, seen = running_panels(prepared), []
+
+    def look(setup: Setup) -> Stage:
+        seen.append(lab_stage(prepared, setup, panels))
+        return seen[-1][0]
+
+    box = lab_box(prepared, look)
+    setup, (stage, fast) = box.setup, seen[0]
+    named = {"gas": box.gas, "gauges": box.gauges, "picture": box.picture, "speeds": box.speeds, "layers": box.layers}
+    named["book"] = box.book
+    memory = image(arguments(box), named)
+    state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
+    wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
+    wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "picture.place", "picture.colour", "picture.length"}
+    wanted |= {"picture.state", "picture.drops", "picture.many"}
+    wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _has_wind(box) else set()
+    wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
+    found, numbers = _knobs(box)
+    begun = short_run(prepared)
+    readings = _readings(box)
+    if not np.isfinite(begun.air_pressure.values).any():  # no wall on which pressure is measured
+        readings = [each for each in readings if each[0] != "air_pressure"]
+    profiles = _profiles(box)
+    if box.attracts:
+        readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
+    curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
+    unit = setup.scale.time / _SECONDS[setup.time_unit]
+    show_plan(stage.record["panels"], curves, unit)
+    series = {name for name, _, _ in readings} | {name for table in curves for name in table["curves"]}
+    plan = {
+        "told": {
+            "stage": stage.record,
+            "controls": knob_controls(found),
+            "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
+            "lesson": _lesson(prepared, series, setup, stage.record["panels"]),
+        },
+        "base": BASE,
+        "size": memory.size,
+        "pieces": [[place, len(content)] for place, content in memory.pieces],
+        "blocks": memory.blocks,
+        "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
+        "arrays": {name: memory.arrays[name] for name in sorted(wanted)},
+        "state": state,
+        "molecules": setup.parcel.number,
+        "present": int(WaterReading.MOLECULES) if box.modes.phases else None,
+        "frame": setup.frame,
+        "frames": setup.frames,
+        "samples": setup.samples,
+        "settle": 0 if setup.ends else setup.settle,
+        "ends": setup.ends,
+        "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
+        "rate": _rate(setup, _SOON if setup.ends or _has_wind(box) else _WHOLE),
+        "time": unit,
+        "length": setup.scale.length * stage.record["metre"],
+        "fastest": stage.record["speed"]["high"],
+        # how the scale of speeds follows the temperature
+        "scale": None
+        if box.attracts
+        else {"swift": fast, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
+        "ledger": Reading.LEDGER.value,
+        "readings": readings,
+        # the energy of discs on a table is not shown as a temperature
+        "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
+        "profiles": profiles,
+        "wind": _wind(box) if _has_wind(box) else None,
+        "fixed": _fixed(box),
+        "tables": curves,
+        "planned": [_AT_REST] if _has_wind(box) else planned_alone(box),
+        "knobs": numbers,
+        "units": {},
+        "command": _command(prepared),
+        "link": link_start(prepared),
+        "seeded": box.seeded,
+        "seed": prepared.settings.seed,
+    }
+    names = [name for name, _, _ in readings]
+    names += [name for table in plan["tables"] for name in table["curves"]]
+    plan["units"] = {name: declared(name, setup.time_unit).unit for name in names if known(name.partition("[")[0])}
+    return plan, memory, box
+
+
+def _rate(setup: Setup, least: float) -> float:
+    """Return the time of the box that passes in a second at the usual pace [reduced time].
+
+    A molecule crosses the box `_CROSSINGS` times in a second, but the whole run lasts at least ``least`` seconds; an
+    ascent lasts exactly as long.
+    """
+    parcel = setup.parcel
+    whole = setup.duration / least
+    if setup.ends or not parcel.number:
+        return whole
+    kT = 2.0 * parcel.energy()[0] / (3.0 * parcel.number)
+    speed = math.sqrt(8.0 / math.pi * float(np.nanmax([kT, *parcel.wall_kT()])) / float(np.mean(parcel.mass)))
+    sides = parcel.length[[0, 2]] if parcel.planar else parcel.length
+    side = float(np.exp(np.log(sides).mean()))
+    crossings = _SLOWLY if any(type(each) is Nuclei for each in setup.instruments) else _CROSSINGS
+    return min(whole, crossings * side / speed) if speed > 0.0 else whole
+
+
+def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
+    """Return whether a graph draws one series against another, so that all their values are sent each time."""
+    times = readings - {"elapsed_time"}
+    return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
+
+
+def _drawn(
+    found: list[dict[str, Any]], panels: tuple[Panel, ...], measured: list[tuple[str, str, int, int, float]]
+) -> list[dict[str, Any]]:
+    """Return tables of theory without profiles that no panel draws or that kernels compute, and without empty series.
+
+    The other profiles are rounded to `_FIGURES`. Series are not rounded, because they are saved too.
+    """
+    drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error)}
+    drawn -= {name for name, *_ in measured}
+    for table in found:
+        table["curves"] = {
+            name: [_seen(row) for row in rows] if isinstance(rows[0], list) else rows
+            for name, rows in table["curves"].items()
+            if (name in drawn if isinstance(rows[0], list) else any(value is not None for value in rows))
+        }
+    return found
+
+
+def _seen(row: list[float | None]) -> list[float | None]:
+    return [None if value is None else float(f"{value:.{_FIGURES}g}") for value in row]
+
+
+def _readings(box: LabBox) -> list[tuple[str, int, float]]:
+    """Return the readings that are shown: name, index, and factor to SI units or to the unit of the page."""
+    setup = box.setup
+    scale = setup.scale
+    found: list[tuple[str, int, float]] = [
+        ("elapsed_time", Reading.TIME, scale.time / _SECONDS[setup.time_unit]),
+        ("air_temperature", Reading.KT, scale.temperature),
+        ("air_pressure", Reading.PRESSURE, scale.pressure),
+        ("collision_count", Reading.CONTACTS, 1.0),
+    ]
+    if box.gauges.half.size:
+        found += [
+            ("running_energy_light", Reading.LIGHT, scale.energy),
+            ("running_energy_heavy", Reading.HEAVY, scale.energy),
+            ("energy_change", Reading.ENERGY_CHANGE, 1.0),
+            ("momentum_residual", Reading.MOMENTUM, 1.0),
+        ]
+    if box.gauges.mixture.right.size:
+        found += [("mixing_amplitude", Reading.AMPLITUDE, 1.0), ("mixing_entropy", Reading.ENTROPY, 1.0)]
+    if _has_wind(box):
+        speed = scale.velocity
+        found += [("wind_speed", Reading.WIND, speed), ("roll_speed", Reading.ROLLS, speed)]
+        found.append(("tracer_share_aloft", Reading.ALOFT, 1.0))
+    found += water_readings(box) if box.modes.phases else []
+    if any(type(each) is Lift for each in setup.instruments):
+        found += [
+            ("parcel_temperature", Reading.PARCEL_KT, scale.temperature),
+            ("parcel_pressure", Reading.PARCEL_PRESSURE, scale.pressure),
+            ("moment", Reading.MOMENT, 1.0),
+        ]
+    if any(knob.name == "gravity" for knob in setup.knobs):
+        found.append(("gravity", Reading.GRAVITY, scale.acceleration))
+    warm = np.isfinite(setup.parcel.wall_kT())
+    if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
+        warm[slice(*box.warmed)] = True
+    found += [
+        (f"wall_temperature[{name}]", Reading.WALL_KT + wall, scale.temperature)
+        for wall, name in enumerate(_WALLS)
+        if warm[wall]
+    ]
+    return [(name, int(place), float(factor)) for name, place, factor in found]
+
+
+def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return question and task of the scene, without a task whose variables the page does not have; no presets."""
+    lesson = lesson_of(prepared.module)
+    task, predict = lesson.task, dict(lesson.predict or {})
+    found: dict[str, Any] = {"presets": [], "predict": predict or None, "task": None}
+    if "draw" in predict:
+        predict["draw"] = drawing(predict["draw"], panels, setup)
+    if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
+        return found
+    units = {_TIME: _SECONDS[setup.time_unit]}  # all other variables of the page are in SI
+    scaled = [(goal, units.get(goal["name"], 1.0)) for goal in task["reach"]]
+    reach = [
+        goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
+        for goal, by in scaled
+    ]
+    return found | {"task": {**task, "reach": reach}}
+
+
+def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
+    """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
+    scale = box.setup.scale
+    bins, layers = box.gauges.counts.size, box.gauges.sums.shape[1]
+    found = [("speed_probability_density", "speeds", 0, bins, 1.0 / scale.velocity)] if bins else []
+    if layers:
+        found += [
+            ("number_density", "layers", 0, layers, scale.number_density),
+            ("layer_temperature", "layers", layers, layers, scale.temperature),
+            ("layer_pressure", "layers", 2 * layers, layers, scale.pressure),
+        ]
+    if _has_wind(box):
+        found.append(("layer_wind", "layers", 3 * layers, layers, scale.velocity))
+    across = box.gauges.mixture.counts.shape[1]
+    if across:
+        found += [
+            (f"left_gas_share_{name}", "gauges.mixture", place * across, across, 1.0)
+            for place, name in enumerate(MOMENTS)
+        ]
+    found += leaving_energies(box) if box.modes.phases else []
+    told = [
+        (name + end, f"{array}.{part}", first, count, float(factor))
+        for name, array, first, count, factor in found
+        for end, part in (("", "mean"), ("_se", "error"))
+    ]
+    if _has_wind(box):
+        told.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, float(scale.temperature)))
+    return told
+
+
+def _wind(box: LabBox) -> dict[str, Any]:
+    """Return the cells of the wind that is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
+    flow: Any = box.gauges.flow
+    rows, columns = flow.high.size, flow.wave.shape[1]
+    speed = float(box.setup.scale.velocity)
+    return {"rows": rows, "columns": columns, "factor": speed, "least": _SLOWEST * speed}
+
+
+def _has_wind(box: LabBox) -> bool:
+    """Return whether the wind is measured."""
+    flow: Any = box.gauges.flow
+    return bool(flow and flow.high.size)
+
+
+def _fixed(box: LabBox) -> dict[str, Any]:
+    """Return the coordinates that do not change: the middles of bins of speed, layers and bins of distance, in SI."""
+    edges, layers = box.gauges.edges * box.setup.scale.velocity, box.gauges.sums.shape[1]
+    found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
+    if layers:
+        height = np.linspace(0.0, float(box.setup.parcel.length[2]), layers + 1) * box.setup.scale.length
+        found["height"] = plain(0.5 * (height[1:] + height[:-1]))
+    mixture = box.gauges.mixture
+    across = mixture.counts.shape[1]
+    if across:
+        edges = np.linspace(0.0, mixture.width, across + 1) * box.setup.scale.length
+        found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
+    return found | (fixed_axes(box) if box.modes.phases else {})
+
+
+def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
+    """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
+    setup = box.setup
+    # a knob of a user's own scene is a function in Python, of which the page knows nothing
+    kept = [knob for knob in setup.knobs if knob.name in _KNOBS and box.prepared.scene in SCENES]
+    kept = [knob for knob in kept if knob.name != "gravity" or can_set_gravity(box.modes)]
+    numbers: dict[str, Any] = {}
+    for knob in kept:
+        unit = declared_unit(knob.unit)
+        told: dict[str, Any] = {"up": unit.up, "down": unit.down, "offset": unit.offset, "times": 1.0, "over": 1.0}
+        is_wet = hasattr(setup.parcel, "vapour")
+        if knob.name.endswith("temperature"):
+            kernel, argument = ("warm_bath", "1") if box.attracts and has_bath(setup) else ("warm_walls", "3")
+            told |= {"kernel": kernel, "argument": argument, "times": BOLTZMANN, "over": setup.scale.energy}
+            if is_wet:
+                told["argument"] = "4"
+                told |= {} if knob.leave is None else {"leave": "smooth_walls", "rounds": True}
+            if knob.wall is not None:
+                told["walls"] = {"1": knob.wall, "2": knob.wall + 1}
+        elif knob.name == "gravity":
+            told |= {"kernel": "set_gravity", "argument": "4", "over": setup.scale.acceleration, "rounds": True}
+            told["everywhere"] = "0.box.gravity"
+        elif knob.name == "attraction":
+            told |= {"kernel": "attract", "argument": "3"}
+        elif knob.name == "open_pool":
+            told |= {"kernel": "cover_pool", "argument": "2"}
+        else:  # a part of the way, or a height; both are converted to a moment of the ascent
+            told |= {"kernel": "lead", "argument": "3", "end": _end(setup)}
+            if knob.places is not None:
+                heights, shares = knob.places
+                told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}
+        numbers[knob.name] = told
+    return kept, numbers
+
+
+def _end(setup: Setup) -> float:
+    """Return the last moment of the planned ascent."""
+    parcel: Any = setup.parcel
+    return float(parcel.driver.course.end)
+
+
+def _command(prepared: Prepared) -> str:
+    """Return the command that starts the same run, with the seed at its end."""
+    changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
+    sets = "".join(f" --set {name}={value}" for name, value in changed.items())
+    engine = f" --engine {prepared.unusual_engine}" if prepared.unusual_engine else ""
+    return f"atmosbox run {prepared.scene}{sets}{engine} --seed {prepared.settings.seed}"

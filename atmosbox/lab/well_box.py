@@ -1,0 +1,115 @@
+"""A box of molecules that attract each other, as the arrays that the kernels of a page work on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.engine.core.state import EVENT, aligned_records
+from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.wells.vicinity import new_vicinity
+from atmosbox.engine.wells.well_events import WellGas
+from atmosbox.lab.kernels.attracting import Lists
+from atmosbox.lab.kernels.clustering import FIRST, Crowd, DropReading
+from atmosbox.lab.kernels.gauging import Reading
+from atmosbox.scene.instruments import Clusters
+from atmosbox.scene.instruments.condensate import CROWDED
+from atmosbox.scene.setup import Setup
+
+_LONGER = 4
+"""Factor by which the lists of neighbours can grow, because memory is reserved for that."""
+_POWERS = 4
+
+
+def well_gas(parcel: Any) -> WellGas:
+    """Return the gas before the neighbours of its molecules are listed, with memory for longer lists."""
+    number, gas = parcel.number, parcel.arrays().gas
+    old = gas.vicinity
+    vicinity = new_vicinity(parcel.length, parcel.periodic, number, old.reach, planar=parcel.planar)
+    entry = np.zeros(number * _LONGER * old.stride, np.uint32)
+    made: WellGas = gas._replace(
+        events=aligned_records(number, EVENT),
+        calendar=new_calendar(number),
+        vicinity=vicinity._replace(entry=entry, stride=old.stride),
+    )
+    return made
+
+
+def lists(parcel: Any) -> Lists:
+    """Return the lengths of the lists of neighbours, and the full depths of the wells."""
+    arrays = parcel.arrays()
+    stride = arrays.gas.vicinity.stride
+    due = np.zeros(1, np.int64)
+    return Lists(np.array([stride]), due, arrays.full_depth, np.array([parcel.strength]), np.zeros(1))
+
+
+def crowd(setup: Setup) -> Crowd:
+    """Return the data of the drops at the start, without any drop."""
+    number = setup.parcel.number
+    clusters = next((each for each in setup.instruments if type(each) is Clusters), Clusters(0))
+    return Crowd(
+        members=clusters.molecules,
+        crowded=CROWDED,
+        wells=np.zeros(number, np.int64),
+        drop=np.zeros(number, np.int64),
+        size=np.zeros(number, np.int64),
+        liquid=clusters.liquid,
+        virial=np.zeros(1),
+        gas_law=_gas_law(),
+    )
+
+
+def _gas_law() -> NDArray[np.float64]:
+    """Return the coefficients of B2 and B3, which are polynomials in x = e^(1 / T*) - 1, from theory at four x.
+
+    Examples
+    --------
+    >>> x = np.expm1(1.0 / 1.3)
+    >>> second, third = (float(row @ x ** np.arange(4)) for row in _gas_law())
+    >>> bool(abs(second / law.square_well_second_virial(1.3) - 1.0) < 1e-12)
+    True
+    """
+    x = np.array([0.25, 0.5, 1.0, 2.0])
+    warmth = 1.0 / np.log1p(x)
+    told = np.stack([law.square_well_second_virial(warmth), law.square_well_third_virial(warmth)])
+    return np.ascontiguousarray(np.linalg.solve(np.vander(x, _POWERS, increasing=True), told.T).T)
+
+
+def drop_readings(setup: Setup, theory: set[str]) -> list[tuple[str, int, float]]:
+    """Return the readings of the drops: name, index, and factor to SI units.
+
+    Parameters
+    ----------
+    setup
+        The box.
+    theory
+        Names of the curves that the scene's theory has.
+    """
+    scale, drop = setup.scale, DropReading
+    found = [("kinetic_energy", int(Reading.KINETIC), scale.total_energy)]
+    rows = (
+        ("largest_drop_molecule_count", drop.LARGEST, 1.0),
+        ("vapor_molecule_count", drop.VAPOUR, 1.0),
+        ("drop_count", drop.DROPS, 1.0),
+        ("attraction_energy", drop.WELL_ENERGY, scale.total_energy),
+        ("molecular_energy", drop.ENERGY, scale.total_energy),
+        ("heat_from_bath", drop.BATH_HEAT, scale.total_energy),
+        ("work_by_attraction", drop.ATTRACTION_WORK, scale.total_energy),
+        ("virial_pressure", drop.PRESSURE, scale.pressure),
+        ("well_count", drop.WELLS, 1.0),
+    )
+    bath = FIRST + drop.BATH_KT if has_bath(setup) else Reading.WALL_KT + 4
+    curves = (
+        ("air_temperature_theory", bath, scale.temperature),
+        ("virial_pressure_theory", FIRST + drop.GAS_PRESSURE, scale.pressure),
+    )
+    found += [(name, FIRST + place, factor) for name, place, factor in rows]
+    return found + [(name, int(place), factor) for name, place, factor in curves if name in theory]
+
+
+def has_bath(setup: Setup) -> bool:
+    """Return whether a random bath, and not walls, keeps the molecules at a temperature."""
+    return float(setup.parcel.arrays().gas.bath.rate) > 0.0  # type: ignore[attr-defined]

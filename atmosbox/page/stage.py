@@ -1,0 +1,538 @@
+"""The stage: what the page gets once of a run, namely the box, how molecules are drawn, the graphs and the texts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.file.molecules import Molecules
+from atmosbox.page.frame import clumps, encode, layer
+from atmosbox.page.panel import Meaning, declared, names, panel_record
+from atmosbox.scene.panels import Panel
+from atmosbox.theory.constants import DRY_AIR
+
+MOST = 5000
+"""Greatest number of molecules that are drawn; a computer without a graphics card is fast enough for this number."""
+
+_ROOM = 850_000  # molecules times frames of a page of 10 MB
+_ENOUGH = 240  # frames; a page with fewer would rather leave out molecules
+
+Indices = NDArray[np.intp]
+
+
+class Share(NamedTuple):
+    """Numbers of molecules and frames of a run that a page holds."""
+
+    molecules: int
+    frames: int
+
+
+def share(molecules: int, frames: int, runs: int = 1) -> Share:
+    """Return how many molecules and frames of a run fit into a page.
+
+    Parameters
+    ----------
+    molecules, frames : int
+        Numbers of molecules and frames of the run.
+    runs : int
+        Number of runs on the page.
+
+    Returns
+    -------
+    Share
+        The numbers that are kept. First, molecules beyond `MOST` are left out, then frames, down to 240, then more
+        molecules.
+
+    Examples
+    --------
+    >>> share(800, 400), share(10_000, 240), share(200, 100_000)
+    (Share(molecules=800, frames=400), Share(molecules=3541, frames=240), Share(molecules=200, frames=4250))
+    """
+    room = _ROOM // runs
+    kept = max(1, min(molecules, MOST, room // max(1, min(frames, _ENOUGH))))
+    return Share(kept, max(1, min(frames, room // kept)))
+
+
+def chosen(count: int, most: int, water: NDArray[np.bool_] | None = None) -> Indices:
+    """Return which molecules are drawn, evenly spaced in the list of all molecules.
+
+    Parameters
+    ----------
+    count : int
+        Number of molecules.
+    most : int
+        Greatest number of molecules that are drawn.
+    water : (molecule,), optional
+        Whether each molecule is water. All molecules of water are drawn if they are at most half of ``most``.
+
+    Returns
+    -------
+    ndarray of int
+        Indices of the molecules that are drawn, in ascending order.
+
+    Examples
+    --------
+    >>> chosen(6, 3).tolist(), chosen(6, 3, np.arange(6) == 5).tolist()
+    ([0, 2, 5], [0, 4, 5])
+    """
+    if count <= most:
+        return np.arange(count)
+    if water is None or not water.any():
+        return _even(count, most)
+    wet, dry = np.flatnonzero(water), np.flatnonzero(~water)
+    kept = max(min(len(wet), most // 2), most - len(dry))
+    parts = (wet[_even(len(wet), kept)], dry[_even(len(dry), most - kept)])
+    return np.sort(np.concatenate(parts))
+
+
+def _even(count: int, most: int) -> Indices:
+    """Return at most ``most`` of the whole numbers below ``count``, evenly spaced."""
+    if count <= most:
+        return np.arange(count)
+    return np.unique(np.rint(np.linspace(0, count - 1, most)).astype(np.intp))
+
+
+_UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
+_WALLS = 6
+
+
+@dataclass(frozen=True)
+class Box:
+    """The box at its start.
+
+    Parameters
+    ----------
+    length : (axis,)
+        Its three sides [m].
+    walls : (wall,)
+        The law of each wall: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
+        x high, y low, y high, z low, z high.
+    wall_temperature : (wall,)
+        Temperature of each wall [K]; None for a wall without one.
+    planar : bool
+        Whether the molecules do not move along y.
+    gravity : bool
+        Whether there is gravity.
+    reach : float, optional
+        Greatest height of the ceiling during the run [m], if it is known.
+
+    Examples
+    --------
+    >>> Box(length=(2e-8, 2e-8, 3e-8)).unit
+    'nm'
+    """
+
+    length: tuple[float, float, float]
+    walls: tuple[str, ...] = ("specular",) * _WALLS
+    wall_temperature: tuple[float | None, ...] = (None,) * _WALLS
+    planar: bool = False
+    gravity: bool = False
+    reach: float | None = None
+
+    @property
+    def unit(self) -> str:
+        """The unit in which its sides are shown."""
+        return length_unit(max(self.length))
+
+    @property
+    def metre(self) -> float:
+        """One metre in the unit that is shown."""
+        return 1.0 / _UNITS[self.unit]
+
+    def as_record(self) -> dict[str, object]:
+        """Return the box as data for the page, its lengths in the unit that is shown."""
+        length = [side * self.metre for side in self.length]
+        warm = [t if t is not None and math.isfinite(t) else None for t in self.wall_temperature]
+        return {
+            "unit": self.unit,
+            "length": length,
+            "reach": max(length[2], (self.reach or 0.0) * self.metre),
+            "walls": list(self.walls),
+            "wall_temperature": warm,
+            "planar": self.planar,
+            "gravity": self.gravity,
+        }
+
+
+def page_box(seen: Molecules) -> Box:
+    """Return the box of a saved run.
+
+    Parameters
+    ----------
+    seen : Molecules
+        The molecules of the run and their box.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> none = np.zeros((1, 0))
+    >>> sides, unknown = np.array([[2e-8, 2e-8, 3e-8]]), np.full((1, 6), np.nan)
+    >>> air = Molecules(False, none, none, none, none, none, None, sides, ("specular",) * 6, unknown, False, False)
+    >>> page_box(air).length
+    (2e-08, 2e-08, 3e-08)
+    """
+    x, y, z = (float(side) for side in seen.side[0])
+    warm = tuple(float(value) if math.isfinite(value) else None for value in seen.wall_temperature[0])
+    reach = None if seen.discs else float(seen.side[:, 2].max())
+    return Box((x, y, z), seen.walls, warm, seen.planar, seen.gravity, reach)
+
+
+def length_unit(length: float) -> str:
+    """Return the unit in which a length is shown.
+
+    Parameters
+    ----------
+    length : float
+        The length [m].
+
+    Returns
+    -------
+    str
+        The largest of nm, µm, mm, m and km that is not longer than the length; nm for shorter lengths.
+
+    Examples
+    --------
+    >>> length_unit(2.1e-8), length_unit(1.0), length_unit(25e3)
+    ('nm', 'm', 'km')
+    """
+    known = [name for name, size in _UNITS.items() if length >= 0.999 * size]
+    return known[-1] if known else "nm"
+
+
+def length_text(length: float, figures: int = 2) -> str:
+    """Return a length as text.
+
+    Parameters
+    ----------
+    length : float
+        The length [m].
+    figures : int
+        Number of significant digits.
+
+    Returns
+    -------
+    str
+        The number and its unit.
+
+    Examples
+    --------
+    >>> length_text(6.93e-9), length_text(129.898, 3)
+    ('6.9 nm', '130 m')
+    """
+    unit = length_unit(length)
+    return f"{length / _UNITS[unit]:.{figures}g} {unit}"
+
+
+Floats = NDArray[np.floating]
+
+_SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
+_CROWD = 800
+_BESIDE_DROPS, _BESIDE_MIST = (
+    0.4,
+    0.6,
+)  # factors on that diameter in a scene with drops or a mist, so that these stand out
+ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+_ALIKE = 0.01
+_BEND = (
+    0.5  # power of the speed that the colours of discs follow, because most discs are slower than half of the fastest
+)
+NEIGHBOURS = 12.0
+"""Upper end of the colour scale where colours show the number of neighbours."""
+_PARTICLES = {False: "molecule", True: "disc"}
+
+
+class Stage(NamedTuple):
+    """The data that the page gets once, and what is needed to make frames for it.
+
+    Attributes
+    ----------
+    record : dict
+        The stage in types that JSON can hold.
+    shown : (shown,)
+        Indices of the molecules that are drawn.
+    variables : tuple of str
+        The variables that the graphs need.
+    """
+
+    record: dict[str, Any]
+    shown: Indices
+    variables: tuple[str, ...]
+
+    def frame(
+        self,
+        sequence: int,
+        time: float,
+        length: ArrayLike,
+        position: ArrayLike,
+        speed: ArrayLike,
+        *,
+        drops: ArrayLike | None = None,
+        liquid: int = 0,
+        rained: int = 0,
+        highest: float | None = None,
+    ) -> bytes:
+        """Return one frame as the bytes that the page reads.
+
+        Parameters
+        ----------
+        sequence : int
+            The number of the frame.
+        time : float
+            The time, in the unit of the stage.
+        length : (axis,)
+            Sides of the box in this frame [m].
+        position, speed : (molecule, axis) and (molecule,)
+            Positions and speeds of all molecules of the run [m, m/s]; NaN for a molecule in the liquid.
+        drops : (drop, 4), optional
+            Positions and radii of drops that the engine follows [m]; rows of NaN are left out.
+        liquid, rained : int
+            Number of molecules in a mist or a pool, and number of molecules that have left as rain.
+        highest : float, optional
+            The speed at the top of the colour scale of this frame [m/s]; by default that of the stage.
+
+        Returns
+        -------
+        bytes
+            See `atmosbox.page.frame.encode`.
+
+        Examples
+        --------
+        >>> box = Box(length=(2e-8, 2e-8, 2e-8))
+        >>> air = stage(scene="air", title="Air", box=box, mass=[4.8e-26], diameter=[3.7e-10], fastest=900.0)
+        >>> len(air.frame(0, 0.5, box.length, [[1e-8, 1e-8, 1e-8]], [470.0]))
+        44
+        """
+        metre = self.record["metre"]
+        sides = np.asarray(length, np.float64) * metre
+        place = np.asarray(position, np.float64)[self.shown] * metre
+        fast = np.asarray(speed, np.float64)[self.shown]
+        water = self.record["water"]
+        wet: Floats = np.zeros((0, 4))
+        if drops is not None:
+            wet = np.asarray(drops, np.float64).reshape(-1, 4)
+            wet = wet[np.isfinite(wet).all(axis=1)] * metre
+        elif self.record["box"]["walls"][4] == "pool":
+            wet = layer(liquid, water)
+        elif liquid:
+            wet = clumps(liquid, water, sides, self.record["species"][-1]["drawn"])
+        wet = np.concatenate((wet, layer(rained, water, rain=True)))
+        return encode(sequence, time, sides, place, fast, highest or self.record["speed"]["high"], wet)
+
+
+def stage(
+    *,
+    scene: str,
+    title: str,
+    box: Box,
+    mass: ArrayLike,
+    diameter: ArrayLike,
+    fastest: float,
+    water: ArrayLike | None = None,
+    drops: bool = False,
+    right: ArrayLike | None = None,
+    story: str = "",
+    facts: Iterable[tuple[str, str]] = (),
+    settings: Iterable[tuple[str, str]] = (),
+    version: str = "",
+    seed: int | None = None,
+    engine: str = "exact",
+    time_unit: str = "ns",
+    panels: Sequence[Panel] = (),
+    most: int = MOST,
+    discs: bool = False,
+    counted: bool = False,
+    meaning: Callable[[str], Meaning] | None = None,
+    sentences: Sequence[Sequence[str]] = (),
+    marks: Mapping[int, dict[str, float]] | None = None,
+) -> Stage:
+    """Return the stage of a run: the data that the page gets once.
+
+    Parameters
+    ----------
+    scene, title : str
+        Name and title of the scene.
+    box : Box
+        The box at the start.
+    mass, diameter : (molecule,)
+        Mass and diameter of every molecule of the run [kg, m]; NaN where they are not known.
+    fastest : float
+        Speed that the colour scale must reach [m/s]; the scale ends at the next round number. With ``counted``, the
+        end of the scale itself, a number of neighbours.
+    water : (molecule,), optional
+        Whether each molecule is water.
+    drops : bool
+        Whether drops fly among the molecules. Drops are drawn to size, and molecules smaller, so that drops stand out.
+    right : (molecule,), optional
+        Whether each molecule belongs to the second of two gases, which was on the right at the start.
+    story, facts, settings, version, seed, engine
+        Contents of the caption.
+    time_unit : str
+        The unit of the times of frames.
+    panels : sequence of Panel
+        The graphs.
+    most : int
+        Greatest number of molecules that are drawn.
+    discs : bool
+        Whether the molecules are called discs and are drawn each with its own size.
+    counted : bool
+        Whether the colours show the number of neighbours of a molecule, and not its speed.
+    meaning : callable, optional
+        Function that returns the `Meaning` of a variable; by default that of its declaration.
+    sentences : sequence of sequence of str
+        The headline numbers of each panel, as sentences.
+    marks : mapping of int to dict, optional
+        Pressures of the levels that panels mark [hPa], by the number of the panel.
+
+    Returns
+    -------
+    Stage
+        The record, the molecules that are drawn, and the variables of the graphs.
+
+    Examples
+    --------
+    Molecules that would be too small to see are drawn wider, and the record says so:
+
+    >>> box = Box(length=(8.4e3, 8.4e3, 2.5e4), gravity=True)
+    >>> column = stage(
+    ...     scene="atmosphere", title="A column", box=box, mass=np.full(9, 4.8e-26), diameter=np.full(9, 50.0),
+    ...     fastest=900.0, time_unit="s",
+    ... )
+    >>> column.record["box"]["unit"], column.record["exaggeration"]
+    ('km', 'Molecules collide as if 50 m wide, and are drawn 10 times as wide.')
+    """
+    heavy = np.atleast_1d(np.asarray(mass, np.float64))
+    wide = np.atleast_1d(np.asarray(diameter, np.float64))
+    wet = None if water is None else np.asarray(water, np.bool_)
+    shown = chosen(len(heavy), most, wet)
+    kinds, kind = _kinds(heavy, wet, None if right is None else np.asarray(right, np.bool_), discs=discs)
+    lengths = np.array([side for axis, side in enumerate(box.length) if not (box.planar and axis == 1)])
+    misty = wet is not None and bool(wet.any()) and box.walls[4] != "pool"
+    beside = _BESIDE_DROPS if drops else _BESIDE_MIST if misty else 1.0
+    room = float(np.exp(np.log(lengths).mean())) * beside
+    wider, said = _width(wide, room, len(shown), discs=discs, unit=box.unit)
+    drawn = wide * wider
+    if not discs and np.ptp(wide[np.isfinite(wide)]) == 0.0:
+        drawn = drawn * np.cbrt(heavy / np.nanmax(heavy))  # equal diameters: the drawn size shows the mass
+    species = [
+        {
+            "name": name,
+            "mass": _mean(heavy[kind == number]),
+            "diameter": _mean(wide[kind == number]) * box.metre,
+            "drawn": _mean(drawn[kind == number]) * box.metre,
+            "count": int(np.sum(kind == number)),
+        }
+        for number, name in enumerate(kinds)
+    ]
+    tell = meaning or (lambda name: declared(name, time_unit))
+    graphs = [(number, panel) for number, panel in enumerate(panels) if panel.kind != "discs"]
+    record = {
+        "scene": scene,
+        "title": title,
+        "story": story,
+        "facts": [list(fact) for fact in facts],
+        "settings": [[name.replace("_", " "), text.replace("degC", "°C")] for name, text in settings],
+        "version": version,
+        "seed": seed,
+        "engine": engine,
+        "particle": _PARTICLES[discs],
+        "molecules": len(heavy),
+        "molecules_shown": len(shown),
+        "exaggeration": said,
+        "metre": box.metre,
+        "box": box.as_record() | {"misty": misty and not drops},
+        "species": species,
+        "kind": kind[shown].tolist(),
+        "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
+        "water": 0 if wet is None else int(wet.sum()),
+        "time": {"unit": time_unit},
+        "speed": {
+            "unit": "m/s",
+            "low": 0.0,
+            "high": fastest if counted else round_up(fastest),
+            "counted": counted,
+            "bend": _BEND if discs else 1.0,
+        },
+        "panels": [
+            panel_record(
+                panel,
+                tell,
+                sentences=sentences[number] if number < len(sentences) else (),
+                marks=(marks or {}).get(number),
+            )
+            for number, panel in graphs
+        ],
+        "variables": {name: {"units": tell(name).unit, "long_name": tell(name).words} for name in names(panels)},
+    }
+    return Stage(record, shown, names(panels))
+
+
+def _kinds(
+    mass: Floats, water: NDArray[np.bool_] | None, right: NDArray[np.bool_] | None, *, discs: bool
+) -> tuple[tuple[str, ...], Indices]:
+    """Return the names of the kinds of molecules, and the index of the kind of each molecule."""
+    if water is not None and water.any():
+        return ("dry air", "water"), water.astype(np.intp)
+    if right is not None:
+        return ("gas from the left", "gas from the right"), right.astype(np.intp)
+    kind = np.zeros(len(mass), np.intp)
+    if discs:
+        if not len(mass) or mass.min() == mass.max():
+            return ("disc",), kind
+        kind[np.argsort(mass, kind="stable")[len(mass) // 2 :]] = 1
+        return ("light half", "heavy half"), kind
+    airy = len(mass) > 0 and abs(float(np.nanmean(mass)) / DRY_AIR.molecule_mass - 1.0) < _ALIKE
+    return ("dry air" if airy else "molecule",), kind
+
+
+def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str) -> tuple[float, str]:
+    """Return the ratio of the drawn to the collision diameter of molecules, and the sentence that tells it."""
+    known = diameter[np.isfinite(diameter)]
+    size = float(known.mean()) if known.size else 0.0
+    particle = _PARTICLES[discs].capitalize()
+    wanted = _SEEN * side * min(1.2, (_CROWD / max(count, 1)) ** (1.0 / 6.0))
+    if size <= 0.0:
+        return 1.0, f"{particle}s are points, and chance decides which of them collide."
+    ratio = wanted / size
+    power = 10.0 ** math.floor(math.log10(ratio)) if ratio > 1.0 else 1.0
+    factor = 1.0 if ratio <= 1.0 else power * min(ROUND, key=lambda each: abs(math.log(each * power / ratio)))
+    as_drawn = "are drawn true to size" if factor == 1.0 else f"are drawn {factor:g} times as wide"
+    if discs:
+        return factor, f"{particle}s {as_drawn}."
+    real = size / DRY_AIR.diameter
+    if unit in ("nm", "µm") and abs(real - 1.0) < _ALIKE:
+        return factor, f"{particle}s {as_drawn if factor == 1.0 else as_drawn + ' as they are'}."
+    if unit in ("nm", "µm"):
+        also = "drawn as wide as they collide" if factor == 1.0 else f"drawn {factor:g} times wider still"
+        return factor, f"{particle}s collide as if {real:.2g} times as wide as those of air, and are {also}."
+    also = "drawn so" if factor == 1.0 else f"drawn {factor:g} times as wide"
+    return factor, f"{particle}s collide as if {length_text(size, 3)} wide, and are {also}."
+
+
+def round_up(value: float) -> float:
+    """Return the next larger round number; 1 if the value is not a finite positive number.
+
+    Examples
+    --------
+    >>> round_up(870.0), round_up(0.0)
+    (1000.0, 1.0)
+    """
+    if not (math.isfinite(value) and value > 0.0):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(f"{next(step for step in ROUND if step * power >= value * (1.0 - 1e-9)) * power:.6g}")
+
+
+def _mean(values: Floats) -> float:
+    """Return the mean of the finite values; 0 if there are none."""
+    known = values[np.isfinite(values)]
+    return float(f"{known.mean():.6g}") if known.size else 0.0
+
+
+def _figures(values: Floats) -> list[float]:
+    """Return numbers with five significant digits, which are enough for a picture."""
+    return [float(f"{value:.5g}") for value in values]

@@ -1,0 +1,389 @@
+"""The engines and their options, as declared, and the one that a user or a scene chooses, checked once.
+
+An engine is chosen by its name, and its options by their values after a colon, as in
+``stepped:delta=0.02,motion=euler``. The command line, a settings file and the output all use this form.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.errors import Option, SettingError, either, on_command_line
+from atmosbox.scene.settings import Parameter, Value, by_name
+from atmosbox.scene.spelling import assignments, nearest
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import ArrayLike, NDArray
+
+    from atmosbox.engine import Liquid, Parcel, Start
+    from atmosbox.engine.core.random import Source
+
+__all__ = ["ENGINES", "EXACT", "FEW", "Engine", "EngineChoice", "choose", "names", "suited", "used"]
+
+
+@dataclass(frozen=True)
+class Engine:
+    """The declaration of an engine.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    summary
+        What it does, in one line.
+    parcel
+        Function that returns the class of its parcels; nothing of the engine is imported before it is called.
+    parameters
+        Its options.
+    ideal
+        Whether the pressure is n kT, without Z: its molecules have no excluded volume.
+    reference
+        Publication of its method.
+    moist
+        Function that returns the class of its parcels with a liquid in them, if there is one.
+    attracting
+        Function that returns the class of its parcels of molecules that attract each other, if there is one.
+    presets
+        Names that stand for several options at once.
+    """
+
+    name: str
+    summary: str
+    parcel: Callable[[], type[Parcel]]
+    parameters: tuple[Parameter, ...] = ()
+    ideal: bool = False
+    reference: str = ""
+    moist: Callable[[Liquid], type[Parcel]] | None = None
+    attracting: Callable[[], type[Parcel]] | None = None
+    presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
+
+
+def _exact() -> type[Parcel]:
+    from atmosbox.engine import ParcelSet
+
+    return ParcelSet
+
+
+def _attracting_exact() -> type[Parcel]:
+    from atmosbox.engine import AttractingParcelSet
+
+    return AttractingParcelSet
+
+
+def _moist_exact(liquid: Liquid) -> type[Parcel]:
+    from atmosbox.engine import Drops
+    from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+    from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+
+    return DropParcelSet if isinstance(liquid, Drops) else MoistParcelSet
+
+
+def _stepped() -> type[Parcel]:
+    from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
+
+    return SteppedParcel
+
+
+def _dsmc() -> type[Parcel]:
+    from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+
+    return DsmcParcel
+
+
+def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
+    from atmosbox.engine import Drops
+    from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
+
+    if isinstance(liquid, Drops):
+        problem = "has no drops with a size of their own"
+        raise SettingError("engine", "dsmc", problem, Option("engine", "exact"), ", or a mist")
+    return MoistDsmcParcel
+
+
+def _number(name: str, default: float, low: float, high: float, help: str) -> Parameter:
+    return Parameter(name, "1", default, low, high, None, help, "float")
+
+
+def _word(name: str, choices: tuple[str, ...], help: str) -> Parameter:
+    return Parameter(name, "", choices[0], None, None, choices, help, "str")
+
+
+def _count(name: str, default: int, high: int, help: str) -> Parameter:
+    return Parameter(name, "1", default, 1, high, None, help, "int")
+
+
+_COLLISIONS = Parameter(
+    "collisions", "", True, None, None, None, "whether molecules collide with each other, or with walls alone", "bool"
+)
+_DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
+
+ENGINES: Mapping[str, Engine] = MappingProxyType(
+    {
+        engine.name: engine
+        for engine in (
+            Engine(
+                "exact",
+                "every contact and every wall hit at its exact time, in order",
+                _exact,
+                (_COLLISIONS,),
+                reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+                moist=_moist_exact,
+                attracting=_attracting_exact,
+            ),
+            Engine(
+                "stepped",
+                "equal steps, as in applets: all molecules move, then those that overlap and approach collide",
+                _stepped,
+                (
+                    _number("delta", 0.05, 1e-6, 1e3, _DELTA),
+                    _word(
+                        "rule",
+                        ("pairwise", "index-order", "look-ahead", "every-overlap"),
+                        "which pairs collide, and how they are found",
+                    ),
+                    _word("motion", ("parabola", "euler"), "how molecules fall"),
+                    _word(
+                        "smooth_walls",
+                        ("mirror", "fold", "flip", "clamp", "undo"),
+                        "what smooth walls do with a molecule that has gone through them",
+                    ),
+                    _COLLISIONS,
+                ),
+                presets={
+                    "applet": {"rule": "index-order", "motion": "euler", "smooth_walls": "fold"},
+                    "applet-discs": {"rule": "look-ahead", "motion": "euler", "smooth_walls": "clamp"},
+                    "applet-atmosphere": {"rule": "pairwise", "motion": "parabola", "smooth_walls": "undo"},
+                },
+            ),
+            Engine(
+                "dsmc",
+                "equal steps: in each cell partners of collisions are drawn at random; for many in a thin gas",
+                _dsmc,
+                (
+                    _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
+                    _number("occupancy", 10.0, 1.0, 1e4, "mean number of molecules in a cell"),
+                    _number("cell", 0.5, 1e-3, 1e3, "side of a cell in mean free paths, in place of an occupancy"),
+                    _COLLISIONS,
+                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
+                ),
+                ideal=True,
+                reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
+                moist=_moist_dsmc,
+            ),
+        )
+    }
+)
+"""The engines by name; the first is exact up to rounding."""
+
+
+FEW = 5000
+"""Largest number of molecules with which a scene of thin gas runs on the exact engine: see `suited`."""
+
+
+@dataclass(frozen=True)
+class EngineChoice:
+    """An engine with its options.
+
+    Parameters
+    ----------
+    engine
+        The engine.
+    options
+        The options that were given, by name; the engine has its own defaults for the rest.
+    described
+        Whether its boxes are only described: checked, but never advanced, so that nothing is compiled.
+
+    Examples
+    --------
+    >>> str(choose("exact"))
+    'exact'
+    """
+
+    engine: Engine
+    options: Mapping[str, Value] = field(default_factory=dict)
+    described: bool = False
+
+    def __str__(self) -> str:
+        """Return the text that chooses this engine."""
+        known = {parameter.name: parameter for parameter in self.engine.parameters}
+        words: list[str] = []
+        preset: Mapping[str, Value] = {}
+        for name, options in self.engine.presets.items():
+            if options.items() <= self.options.items():
+                words, preset = [name], options
+        words += [f"{name}={known[name].typed(value)}" for name, value in self.options.items() if name not in preset]
+        return self.engine.name + (f":{','.join(words)}" if words else "")
+
+    @property
+    def name(self) -> str:
+        """The name of the engine."""
+        return self.engine.name
+
+    @property
+    def ideal(self) -> bool:
+        """Whether the pressure is n kT, without Z: the molecules of the engine have no excluded volume."""
+        return self.engine.ideal or self.options.get("collisions") is False
+
+    def scatter(self, length: Sequence[float], diameter: ArrayLike, rng: Source, **options: Any) -> NDArray[np.float64]:
+        """Return random centres in a box that `make` is to make; see `atmosbox.engine.random_positions`."""
+        from atmosbox.engine import random_positions
+
+        return random_positions(length, diameter, rng, apart=not self.described, **options)
+
+    def make(self, position: ArrayLike, velocity: ArrayLike, **box: Any) -> Parcel:
+        """Return a parcel of this engine; a scene calls this in place of `atmosbox.engine.ParcelSet`.
+
+        Raises
+        ------
+        RefusedError
+            If the engine cannot do what the box requires.
+        SettingError
+            If the box has a ``liquid`` or a ``well`` about its molecules, and the engine has no class for it.
+        """
+        kind: Callable[[], Callable[..., Parcel]] = self.engine.parcel
+        if "liquid" in box:
+            if self.engine.moist is None:
+                able = either("engine", [engine.name for engine in ENGINES.values() if engine.moist is not None])
+                raise SettingError("engine", str(self), "cannot simulate liquid water", *able)
+            kind = partial(self.engine.moist, box["liquid"])
+        if "well" in box:
+            if self.engine.attracting is None:
+                raise SettingError("engine", str(self), "cannot simulate attraction", Option("engine", "exact"))
+            kind = self.engine.attracting
+        if self.described:
+            from atmosbox.scene.described_parcel import DescribedParcel
+
+            return DescribedParcel(position, velocity, **box)
+        return kind()(position, velocity, **self.options, **box)
+
+    def begin(self, start: Start, *, rng: Source | None = None, **box: Any) -> Parcel:
+        """Return a parcel of this engine whose molecules start as declared.
+
+        Parameters
+        ----------
+        start
+            How the molecules start.
+        rng
+            Random numbers of which some have been drawn, if more than the start depends on the seed; otherwise those of
+            the seed of the box.
+        **box
+            The other arguments of `make`.
+
+        Examples
+        --------
+        >>> from atmosbox.engine import Maxwell, Scattered, Start
+        >>> EXACT.begin(Start(20, (Scattered(), Maxwell(1.0))), length=(5, 5, 5), seed=1).number
+        20
+        """
+        from atmosbox.engine import Periodic, RandomNumbers
+
+        walls = [isinstance(wall, Periodic) for wall in box.get("walls", ())]
+        x, y, z = (*walls, *[False] * 6)[:6:2]
+        drawn = start.draw(
+            RandomNumbers(box.get("seed", 0)) if rng is None else rng,
+            periodic=(x, y, z),
+            apart=not self.described,
+            **{name: box[name] for name in ("length", "diameter", "mass", "rotation", "planar") if name in box},
+        )
+        if drawn.rotational_energy is not None:
+            box["rotational_energy"] = drawn.rotational_energy
+        parcel = self.make(drawn.position, drawn.velocity, **box)
+        parcel.start = start if rng is None else None
+        return parcel
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of the engines.
+
+    Examples
+    --------
+    >>> names()[0]
+    'exact'
+    """
+    return tuple(ENGINES)
+
+
+def choose(text: str | EngineChoice) -> EngineChoice:
+    """Return the engine that a text names.
+
+    Parameters
+    ----------
+    text
+        A name, or a name and options: ``stepped:delta=0.02``. A preset is a name for several options, which those
+        after it may change: ``stepped:applet,delta=0.1``.
+
+    Raises
+    ------
+    SettingError
+        If there is no such engine or option, or the value of one is not allowed.
+
+    Examples
+    --------
+    >>> choose("exakt")
+    Traceback (most recent call last):
+        ...
+    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc: give engine="exact".
+    """
+    if isinstance(text, EngineChoice):
+        return text
+    name, colon, rest = str(text).strip().partition(":")
+    if name not in ENGINES:
+        near = "stepped:applet" if name == "classic" else nearest(name, ENGINES) or next(iter(ENGINES))
+        raise SettingError("engine", name, f"is not one of {', '.join(ENGINES)}", Option("engine", near))
+    engine = ENGINES[name]
+    if colon and not rest.strip():
+        raise SettingError("engine", text, "ends in a colon without options", Option("engine", name))
+    parameters = {parameter.name: parameter for parameter in engine.parameters}
+    words = [word.strip() for word in rest.split(",")] if rest else []
+    options = {option: value for word in words for option, value in engine.presets.get(word, {}).items()}
+    try:
+        typed = assignments(word for word in words if word not in engine.presets)
+        given = by_name(typed, parameters, f"an option of the engine {name}")
+        options |= {option: parameters[option].parse(value) for option, value in given.items()}
+        return EngineChoice(engine, options)
+    except SettingError as error:
+        error.instead_of_settings(lambda part: Option("engine", f"{name}:{on_command_line(part)[6:]}"))
+        raise
+
+
+def suited(molecules: int) -> str:
+    """Return the engine that suits a thin gas of ``molecules``: the exact one for few, dsmc for more than `FEW`.
+
+    The excluded volume, which dsmc leaves out, is less than the statistical error in a thin gas. As dsmc takes a
+    quarter of the time or less, it can have more molecules, which scatter less. Few molecules are watched one by one,
+    and should collide where they are seen to touch.
+
+    Examples
+    --------
+    >>> suited(800), suited(30_000)
+    ('exact', 'dsmc')
+    """
+    return "exact" if molecules <= FEW else "dsmc"
+
+
+def used(dataset: xr.Dataset) -> EngineChoice:
+    """Return the engine that made a dataset; of one that was in steps in an earlier version, only what still exists.
+
+    Raises
+    ------
+    SettingError
+        If there never was such an engine.
+    """
+    made = str(json.loads(dataset.attrs.get("atmosbox_parameters", "{}")).get("engine", "exact"))
+    try:
+        return choose(made)
+    except SettingError:
+        if made.partition(":")[0] not in ("classic", "stepped"):
+            raise
+        return choose("stepped:collisions=off" if "collisions=off" in made else "stepped")
+
+
+EXACT = EngineChoice(ENGINES["exact"])
+"""The engine of a scene that names no other, unless the user asks for another."""

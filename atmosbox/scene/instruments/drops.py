@@ -1,0 +1,109 @@
+"""The visible drops: their number and sizes; and drops with salt beside drops of pure water."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox import theory as law
+from atmosbox.engine import Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.water import gas_kT, vapour_pressure
+from atmosbox.scene.units import Scale
+
+
+class DropSizes:
+    """The number of drops, the radius of the largest, and the area of all on which molecules hit them.
+
+    A molecule hits a drop when its centre is half a diameter from the surface of the drop. The area is the mean over
+    the samples within a frame; number and radius are those at its end.
+    """
+
+    def __init__(self) -> None:
+        self._area: list[float] = []
+        self._rows: list[tuple[float, float, float]] = []
+
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Sum the areas of the drops."""
+        reach = parcel.drops()[1] + 0.5 * float(parcel.diameter[0])
+        self._area.append(4.0 * np.pi * float(np.sum(reach**2)))
+
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Count the drops."""
+        radius = parcel.drops()[1]
+        self._rows.append((float(np.mean(self._area)), float(radius.max()), float(len(radius))))
+        self._area = []
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series; see `Instrument`."""
+        if not self._rows:
+            return Readings()
+        area, largest, count = np.array(self._rows).T
+        return Readings(
+            drop_area=area * scale.length**2,
+            largest_drop_radius=largest * scale.length,
+            drop_count=count.astype(np.int64),
+        )
+
+
+class Nuclei:
+    """The number of molecules in each drop, the mean radius of those with and of those without salt, and the humidity.
+
+    The sizes are those at the end of a frame. The humidity is the mean over its samples: the vapour pressure in the
+    space outside the drops, over the saturation vapour pressure at the temperature of the liquid. With the temperature
+    of the gas, which defines relative humidity, it would scatter far more.
+
+    Parameters
+    ----------
+    width
+        Ratio of the width of the drops in the box to that of real drops; radii are those of real drops.
+    radius
+        Radii for which theory gives the humidity over a drop [m].
+    """
+
+    def __init__(self, width: float, radius: ArrayLike) -> None:
+        self.width = width
+        self.radius = np.asarray(radius, np.float64)
+        self._looks: list[tuple[float, float]] = []
+        self._humid: list[tuple[float, float]] = []
+        self._held: list[np.ndarray] = []
+        self._mean: list[list[float]] = []
+
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Measure the vapour pressure."""
+        reach = parcel.drops()[1] + 0.5 * float(parcel.diameter[0])
+        room = 1.0 - 4.0 / 3.0 * math.pi * float(np.sum(reach**3)) / parcel.volume
+        self._looks.append((vapour_pressure(parcel, gas_kT(parcel)) / room, parcel.liquid_kT))
+
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Measure the drops."""
+        _, radius, held = parcel.drops()
+        salted = parcel.dissolved > 0.0
+        self._held.append(held)
+        self._mean.append([float(radius[of].mean()) if of.any() else math.nan for of in (salted, ~salted)])
+        pressure, kT = np.mean(self._looks, axis=0)
+        self._humid.append((float(pressure), float(kT)))
+        self._looks = []
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series; see `Instrument`."""
+        if not self._held:
+            return Readings()
+        held = np.zeros((len(self._held), len(self._held[0])), np.int64)
+        for frame, each in enumerate(self._held):
+            held[frame, : len(each)] = each
+        pressure, kT = np.array(self._humid).T
+        salted, pure = np.array(self._mean).T * scale.length / self.width
+        found = Readings(
+            radius=self.radius,
+            drop_molecule_count=held,
+            saturation_ratio=pressure * scale.pressure / law.saturation_vapor_pressure(kT * scale.temperature),
+        )
+        if np.isfinite(salted).any():
+            found["salted_drop_radius"] = salted
+        if np.isfinite(pure).any():
+            found["pure_drop_radius"] = pure
+        return found
