@@ -173,7 +173,7 @@ def read(path: str | os.PathLike[str], language: str = "en") -> dict[str, Any]:
     """
     translation = Path(path).with_suffix(f".{language}.toml")
     if language != "en" and not translation.is_file():
-        missing = f"This scene has no worksheet in {LANGUAGES[language]}, that is no file {translation.name}"
+        missing = f"This scene has no worksheet in {LANGUAGES[language]} (no file {translation.name})"
         raise FileError(missing, "leave ", Option("language"), " out")
     try:
         found = tomllib.loads(Path(path).read_text(encoding="utf-8"))
