@@ -382,7 +382,7 @@ def test_a_german_sheet_has_no_english_words_of_the_layout(tmp_path, kind):
 
 def test_a_sheet_in_a_language_that_its_scene_has_not_is_refused_with_one_sentence(own, tmp_path):
     assert set(LANGUAGES) == {"en", *(each for each in ("de", "es") if "sheet" in words(each))}
-    with pytest.raises(SettingError, match="language = fr is unknown: give en or de."):
+    with pytest.raises(SettingError, match="language = fr is unknown: give en or de"):
         sheets.worksheet("lifting-dry", language="fr")
     with pytest.raises(FileError) as refused:
         sheets.worksheet(own, language="de")
@@ -399,7 +399,7 @@ def test_a_sheet_in_a_language_that_its_scene_has_not_is_refused_with_one_senten
         ("goal = 'c'\n[[notice]]\nask = '{{ A.molecule }}'", "notice 1, ask: molecule is asked for before"),
     ]:
         path.write_text(written, encoding="utf-8")
-        with pytest.raises(ConfigError, match=re.escape(said)):
+        with pytest.raises(ConfigError, match=re.escape(f"{path}: {said}")):
             sheets.worksheet(own, language="de")
     path.write_text("goal = 'c'\n[[notice]]\nask = 'd'", encoding="utf-8")
     told = CliRunner().invoke(app, ["sheet", str(own), "--language", "de", "--out", str(tmp_path / "sheet.md")])

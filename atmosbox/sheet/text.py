@@ -18,7 +18,7 @@ from atmosbox import scenarios
 from atmosbox.errors import ConfigError, FileError, Option, shown
 from atmosbox.sheet import marks, sums
 
-__all__ = ["LANGUAGES", "SECTIONS", "Change", "read", "text_of"]
+__all__ = ["LANGUAGES", "SECTIONS", "Change", "read", "text_of", "translated"]
 
 SUFFIX = ".sheet.toml"
 LANGUAGES = {"en": "English", "de": "German"}
@@ -125,7 +125,7 @@ _DATA = {"set", "headline", "unit", "runs", "right", "lines", "lab"}
 """The entries that are no text: a translation has those of the English file."""
 
 
-def _translated(english: Any, told: Any, place: str) -> Any:
+def _overlaid(english: Any, told: Any, place: str) -> Any:
     """Return an entry of the English file, not yet checked, with its texts from a translation."""
     match english, told:
         case dict(), dict():
@@ -133,12 +133,12 @@ def _translated(english: Any, told: Any, place: str) -> Any:
                 raise ConfigError(f"{place}{shown(name)} is no text of the English file: remove it")
             kept = _DATA if "theory" in told else {*_DATA, "theory"}  # a formula without words is the same
             return {
-                name: each if name in kept else _translated(each, told.get(name), f"{place}{name}, ")
+                name: each if name in kept else _overlaid(each, told.get(name), f"{place}{name}, ")
                 for name, each in english.items()
             }
         case list(), list() if len(english) == len(told):
             pairs = zip(english, told, strict=True)
-            return [_translated(*pair, f"{place.rstrip(', ')} {n}, ") for n, pair in enumerate(pairs, 1)]
+            return [_overlaid(*pair, f"{place.rstrip(', ')} {n}, ") for n, pair in enumerate(pairs, 1)]
         case str(), str():
             return told
     raise ConfigError(f"{place.rstrip(', ')} is missing or has other entries than the English file: write it as there")
@@ -160,6 +160,17 @@ def text_of(module: ModuleType) -> Path | None:
     return None if base is None else text_of(scenarios.load(base))
 
 
+def translated(path: str | os.PathLike[str], language: str) -> Path:
+    """Return the file with the text of a sheet in a language, from that of the English text.
+
+    Examples
+    --------
+    >>> translated("my_scene.sheet.toml", "de").name
+    'my_scene.sheet.de.toml'
+    """
+    return Path(path) if language == "en" else Path(path).with_suffix(f".{language}.toml")
+
+
 def read(path: str | os.PathLike[str], language: str = "en") -> dict[str, Any]:
     """Read the text of a sheet: the entries of its file, and the defaults of those that it does not have.
 
@@ -171,7 +182,7 @@ def read(path: str | os.PathLike[str], language: str = "en") -> dict[str, Any]:
     Traceback (most recent call last):
     atmosbox.errors.FileError: The words of the sheet cannot be read from no/such.sheet.toml: No such file or directory.
     """
-    translation = Path(path).with_suffix(f".{language}.toml")
+    translation = translated(path, language)
     if language != "en" and not translation.is_file():
         missing = f"This scene has no worksheet in {LANGUAGES[language]} (no file {translation.name})"
         raise FileError(missing, "leave ", Option("language"), " out")
@@ -179,7 +190,7 @@ def read(path: str | os.PathLike[str], language: str = "en") -> dict[str, Any]:
         found = tomllib.loads(Path(path).read_text(encoding="utf-8"))
         if language != "en":
             path = translation
-            found = _translated(found, tomllib.loads(path.read_text(encoding="utf-8")), "")
+            found = _overlaid(found, tomllib.loads(path.read_text(encoding="utf-8")), "")
         return _table(found, _SHEET, "")
     except OSError as error:
         raise FileError(f"The words of the sheet cannot be read from {path}: {error.strerror}.") from error

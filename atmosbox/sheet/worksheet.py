@@ -21,7 +21,7 @@ from atmosbox.sheet.generic import WORDS, AnyScene, left_out
 from atmosbox.sheet.graph_row import graph_rows, until
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, bare, filled, fixed, measured, spelled, theoretical
-from atmosbox.sheet.text import LANGUAGES, SECTIONS, Change, read, text_of
+from atmosbox.sheet.text import LANGUAGES, SECTIONS, Change, read, text_of, translated
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
@@ -128,6 +128,7 @@ def worksheet(
     first = runner.prepare(scene, settings or {}, engine=engine)
     path = text_of(first.module) or WORDS
     words = read(path, language)
+    path = translated(path, language)
     alone = _Filling(path, trials(first, ()))
     changes = [Change(**alone.all(each, f"change {n}")) for n, each in enumerate(words["change"], 1)]
     runs = trials(first, changes)
