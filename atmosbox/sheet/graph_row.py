@@ -34,7 +34,7 @@ def until(prepared: Prepared, said: Callable[[str], str] = str) -> str:
     if setup.ends:
         return said("Let each play until it stops.")
     time = setup.duration * setup.scale.time / to_si(1.0, setup.time_unit)
-    return said("Let each play to {}, and pause.").format(f"{time:.3g} {setup.time_unit}")
+    return said("Let each play to {}, and pause.").format(f"{float(f'{time:.3g}'):g} {setup.time_unit}")
 
 
 def graph_rows(runs: Sequence[Trial], said: Callable[[str], str] = str) -> list[dict[str, Any]]:
