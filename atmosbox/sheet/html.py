@@ -70,7 +70,8 @@ def _elements(sheet: Worksheet) -> list[str]:
                 name = said("choices of question {}").format(question)
                 made.append(_choices([_inline(token) for token in block.inside], name, ticked=sheet.answers))
             elif kind == "axes":
-                made.append(_axes(*map(escape, block.axes), said))
+                x, y = map(escape, block.axes)
+                made.append(_axes(x, y, said))
             else:
                 text = PARSER.renderer.render(block.tokens, PARSER.options, {})
                 made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', text))
