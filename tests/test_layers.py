@@ -36,7 +36,7 @@ LAYERS = {
     "page": Layer("errors theory file scene", "numpy", lazily="plot scenarios xarray"),
     "film": Layer("errors theory file scene plot", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
     "sheet": Layer(
-        "version errors file scenarios scene simulation",
+        "version errors file scenarios scene simulation page",
         "numpy jinja2 markdown_it reportlab uncertainties",
         lazily="matplotlib",
     ),

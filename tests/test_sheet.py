@@ -16,11 +16,12 @@ from typer.testing import CliRunner
 from atmosbox import scenarios, theory
 from atmosbox import sheet as sheets
 from atmosbox.cli import app
-from atmosbox.errors import ConfigError
+from atmosbox.errors import ConfigError, FileError, SettingError, on_command_line
+from atmosbox.page.document import phrase, words
 from atmosbox.sheet.pdf import PAPERS, pdf
 from atmosbox.sheet.sheet_run import Trial, execute
 from atmosbox.sheet.sums import Measured, filled, measured, theoretical
-from atmosbox.sheet.text import SECTIONS, read, text_of
+from atmosbox.sheet.text import LANGUAGES, SECTIONS, read, text_of, translated
 from atmosbox.simulation import runner
 from tests.few_frames import FRAMES, cut
 from tests.oracle import moist_adiabat
@@ -157,6 +158,8 @@ def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
         found = made.headlines[headline]
         assert row["unit"] == found.display_unit
         assert filled(row["label"], {"A": made}).startswith(found.label)
+    for found in made.headlines.values():
+        assert not found.tolerance or phrase("de", found.reason) != found.reason
 
 
 @pytest.mark.parametrize("temperature", [0.0, 17.84, 30.0])
@@ -329,3 +332,80 @@ def test_pages_are_written_beside_their_sheet_or_nothing_is(tmp_path):
     # a second sheet uses the same pages
     again = CliRunner().invoke(app, [*asked[:-1], str(tmp_path / "again.md")])
     assert again.exit_code == 0, again.output
+
+
+def kept_in_a_translation(found, place=""):
+    """Return by place what a text has in every language: sums, without their words in quotes, and what is typed."""
+    if isinstance(found, str):
+        kept = re.findall(r"\{\{.*?\}\}|`.*?`", found)
+        return {place: sorted(re.sub(r"'[^']*'|\"[^\"]*\"", "", each) for each in kept)}
+    entries = found.items() if isinstance(found, dict) else enumerate(found) if isinstance(found, list) else ()
+    return {k: v for key, each in entries for k, v in kept_in_a_translation(each, f"{place} {key}").items()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_german_text_of_a_scene_has_the_entries_and_sums_of_the_english_one(name):
+    path = text_of(scenarios.load(name))
+    english, german = read(path), read(path, "de")
+    assert kept_in_a_translation(german) == kept_in_a_translation(english)
+    for part in ("goal", "constants", "leaves_out"):
+        assert german[part] != english[part] or not english[part]
+    for part in ("predict", *SECTIONS):
+        for one, other in zip(english[part], german[part], strict=True):
+            assert one["ask"] != other["ask"]
+    text = re.sub(r"\{\{.*?\}\}", "", translated(path, "de").read_text(encoding="utf-8"))
+    assert not re.search(r"\d,\d", text), "numbers have a decimal point, as those of the program"
+
+
+def test_all_that_the_layout_says_is_translated():
+    code = "\n".join(path.read_text(encoding="utf-8") for path in Path(sheets.__file__).parent.glob("*.[pj]*"))
+    asked = set(re.findall(r'said\("([^"]+)"\)|"([^"]+)" \| said', code))
+    lists = re.findall(r'\[(.+)\] \| map\("said"\)', code)
+    told = {one or other for one, other in asked} | {each for one in lists for each in re.findall('"([^"]+)"', one)}
+    assert len(told) > 30
+    table = words("de")
+    assert told | set(SECTIONS.values()) <= set(table["sheet"]) | set(table["phrase"])
+    for english, german in table["sheet"].items():
+        assert german.count("{}") == english.count("{}")
+
+
+@pytest.mark.parametrize("kind", [{"answers": True}, {"lab": True}, {}])
+def test_a_german_sheet_has_no_english_words_of_the_layout(tmp_path, kind):
+    made = sheets.worksheet("elastic-collisions", {"duration": "6 s"}, language="de", **kind)
+    page = sheets.save(made, tmp_path / "sheet.html").read_text(encoding="utf-8")
+    assert '<html lang="de">' in page
+    page = re.sub(r"<(style|code)[^>]*>.*?</\1>", "", page, flags=re.DOTALL)
+    for english, german in words("de")["sheet"].items():
+        if english != german:
+            assert not re.search(rf"(?<!\w){re.escape(english.partition('{')[0])}(?!\w)", page), english
+    assert "9.8 ist 9,8" in page or made.answers
+    assert pdf(made).pages <= 3
+
+
+def test_a_sheet_in_a_language_that_its_scene_has_not_is_refused_with_one_sentence(own, tmp_path):
+    assert set(LANGUAGES) == {"en", *(each for each in ("de", "es") if "sheet" in words(each))}
+    with pytest.raises(SettingError, match="language = fr is unknown: give en or de"):
+        sheets.worksheet("lifting-dry", language="fr")
+    with pytest.raises(FileError) as refused:
+        sheets.worksheet(own, language="de")
+    assert refused.value.said(on_command_line) == (
+        "This scene has no worksheet in German (no file generic.sheet.de.toml): leave --language out."
+    )
+    own.with_suffix(".sheet.toml").write_text("goal = 'a'\n[[notice]]\nask = 'b'\nlines = 3", encoding="utf-8")
+    path = own.with_suffix(".sheet.de.toml")
+    for written, said in [
+        ("goal = 'c'", "notice is missing or has other entries than the English file"),
+        ("goal = 'c'\nnotice = []", "notice is missing or has other entries"),
+        ("goal = 'c'\n[[notice]]\nanswer = 'd'", "notice 1, answer is no text of the English file: remove it"),
+        ("goal = 'c'\n[[notice]]\nask = 'd'\nlines = 3", "notice 1, lines is no text of the English file"),
+        ("goal = 'c'\n[[notice]]\nask = '{{ A.molecule }}'", "notice 1, ask: molecule is asked for before"),
+    ]:
+        path.write_text(written, encoding="utf-8")
+        with pytest.raises(ConfigError, match=re.escape(f"{path}: {said}")):
+            sheets.worksheet(own, language="de")
+    path.write_text("goal = 'c'\n[[notice]]\nask = 'd'", encoding="utf-8")
+    told = CliRunner().invoke(app, ["sheet", str(own), "--language", "de", "--out", str(tmp_path / "sheet.md")])
+    assert told.exit_code == 0, told.output
+    text = (tmp_path / "sheet.md").read_text(encoding="utf-8")
+    assert text.count("____\n") == 4
+    assert "**1.** d" in text

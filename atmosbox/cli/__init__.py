@@ -3,9 +3,8 @@
 Each command is one file: its options on top, below them what it does. A new one is named in `_COMMANDS`. They share
 
 `application`  the Typer application that all commands belong to
-`option`       the options that several commands have
+`option`       the options that several commands have, and the output file if no name is given
 `request`      where the settings of a run come from: the command line, a settings file, an earlier run
-`output_name`  the output file if no name is given
 `expectation`  the expected errors of a run
 `usage`        what was typed: NAME=VALUE as a setting, and one sentence for what cannot be understood
 `terminal`     how an error ends a command

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     "atmosbox sheet lifting-dry --seed 7 --answers",
     "atmosbox sheet temperature --set temperature=20degC --paper letter --out class.pdf",
     "atmosbox sheet temperature --lab",
+    "atmosbox sheet temperature --language de",
     "atmosbox sheet ./my_scene.py --format html",
 )
 def sheet(
@@ -46,6 +47,7 @@ def sheet(
     values: ValuesOfAll = None,
     seed: Seed = None,
     engine: Engine = None,
+    language: Annotated[Literal["en", "de"], typer.Option(help="The language of the sheet.")] = "en",
     paper: Annotated[Literal["a4", "letter"], typer.Option(help="The size of the pages.")] = "a4",
     format: Annotated[
         Literal["pdf", "html", "md"] | None,
@@ -68,12 +70,13 @@ def sheet(
     asked = gather(scene, values or (), seed=seed, engine=engine)
     if lab:
         asked = asked.for_a_page()
-    default = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{format or 'pdf'}")
+    ending = "" if language == "en" else f"-{language}"
+    default = for_scene(scene, f"-{'answers' if answers else 'sheet'}{ending}.{format or 'pdf'}")
     path = chosen(out, default, force=force, quiet=quiet)
     path = sheets.check(path, format, paper=paper, force=force)
     with prints_to_stderr(), progress(scene, quiet=quiet) as show:
         made = sheets.worksheet(
-            asked.scene, asked.settings, engine=asked.engine, answers=answers, lab=lab, progress=show
+            asked.scene, asked.settings, engine=asked.engine, answers=answers, lab=lab, language=language, progress=show
         )
         pages = _pages(made, path.parent, force) if lab else []
     if not quiet:

@@ -4,8 +4,8 @@ The file of a run holds everything that is drawn: the positions and speeds of th
 the run was made with ``--save-molecules``), and the panels of the scene. Without molecules only the graphs are filmed.
 
 The room `plot` draws the box (`plot.box_picture`) and the graphs; this room adds what only a film needs. Read in this
-order: `pace` (which frames, how fast), `running` and `graph` (graphs that grow), `film_sheet` (the layout of a
-picture) and `film_file` (GIF and MP4).
+order: `graph` (graphs that grow), `film_sheet` (which frames, how fast, and the layout of a picture) and `film_file`
+(GIF and MP4).
 """
 
 from atmosbox.film.film_file import FORMATS, save

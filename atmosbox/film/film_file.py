@@ -59,7 +59,7 @@ def save(
     theme : {"notes", "slides"}
         Small type for a page, or large type for a screen.
     fps, seconds : float, optional
-        Pictures a second, and duration of the film; see `pace` for the defaults.
+        Pictures a second, and duration of the film; see `film_sheet.pace` for the defaults.
     graphs : bool
         Whether only the graphs are filmed, without the molecules.
     force : bool

@@ -1,8 +1,8 @@
 """The public functions of `atmosbox`, which scripts and notebooks call.
 
 Read in this order: `notebook` (detects a notebook, and shows progress in it), `run_dataset` (a dataset that prints
-its results first), `measurement` (`run`, `resume`, `open`, `sweep`), `drawing` (`plot`, `compare`, `show`), `catalogue`
-(`scenes`). Large libraries are imported when a function needs them.
+its results first), `measurement` (`scenes`, `run`, `resume`, `open`, `sweep`), `drawing` (`plot`, `compare`, `show`).
+Large libraries are imported when a function needs them.
 """
 
 from atmosbox.interface.drawing import Comparison, InlinePage, compare, plot, show

@@ -74,7 +74,7 @@ class LabBox(NamedTuple):
 
     ``layers`` is the average of the profiles by height, one quantity after the other, and ``speeds`` the average of the
     shares of molecules by speed; they are empty in a scene that does not show them. If molecules attract each other,
-    ``gas`` and ``layout`` are those of `well_lab_box`, and ``crowd`` holds the data of the drops; otherwise it is 0.
+    ``gas`` and ``layout`` are those of `well_box`, and ``crowd`` holds the data of the drops; otherwise it is 0.
     ``start`` says how molecules are placed with another seed, if ``seeded``.
     """
 

@@ -40,7 +40,7 @@ _WIDER = 1.25
 
 
 def water_readings(box: LabBox) -> list[tuple[str, int, float]]:
-    """Return the readings of the water that are shown: see `lab_plan`."""
+    """Return the readings of the water that are shown: see `plan`."""
     scale, kinds = box.setup.scale, [type(each) for each in box.setup.instruments]
     rate, ratio, warm, force = scale.weight / scale.time, law.WATER_MASS_RATIO, scale.temperature, scale.pressure
     found: list[tuple[str, int, float]] = [
@@ -86,7 +86,7 @@ def water_readings(box: LabBox) -> list[tuple[str, int, float]]:
 
 
 def leaving_energies(box: LabBox) -> list[tuple[str, str, int, int, float]]:
-    """Return the histogram of the energies of molecules that leave the liquid: see `lab_plan._profiles`."""
+    """Return the histogram of the energies of molecules that leave the liquid: see `plan._profiles`."""
     water: Any = box.gauges.water
     bins = water.width.size
     factor = 1.0 / box.setup.scale.energy

@@ -4,11 +4,10 @@ A saved run becomes one HTML file that opens from disk without a network (`save`
 the engine itself runs, is made of the same parts (`lab_page`). Both use the same data: a *stage* that describes the run
 once, and *frames* with the positions at each moment.
 
-Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (the graphs), `page_liquid` and
-`frame` (one moment as bytes), `thinning` (what is left out of a large run), `saved_run` (from a dataset to all of
-these), `word` (the sentences), `control`, `gauge` and `lesson` (what only a box that runs has), `document` (the HTML)
-and `page_file`. The folder ``web`` holds the page's own
-scripts, ``vendor`` the two libraries that draw the page, and the one that makes QR codes.
+Read in this order: `stage` (what is shown), `panel` (the graphs), `frame` (one moment as bytes), `saved_run` (from a
+dataset to all of these, and the file), `word` (the sentences), `controls` and `lesson` (what only a box that runs has),
+`document` (the HTML). The folder ``web`` holds the page's own scripts, ``vendor`` the two libraries that draw the page,
+and the one that makes QR codes.
 """
 
 from atmosbox.page.document import lab_page, view_page

@@ -147,10 +147,23 @@ def words(language: str) -> dict[str, Any]:
     return tomllib.loads(_text("language", f"{language}.toml"))
 
 
+def phrase(language: str, text: str) -> str:
+    """Return an English text of a scene or of a worksheet in a language; a text that its table has not, unchanged.
+
+    Examples
+    --------
+    >>> phrase("de", "How cold does rising air become?"), phrase("de", "argon")
+    ('Wie kalt wird aufsteigende Luft?', 'argon')
+    """
+    plain, told = text.replace("\u00a0", " "), words(language)
+    return str((told.get("phrase", {}) | told.get("sheet", {})).get(plain, text))
+
+
 def _said(language: str, card: Iterable[str]) -> dict[str, Any]:
     """Return the texts of the page in a language, of the cards of all models those of one."""
     told = dict(words(language))
     cards = told.pop("card", {})
+    told.pop("sheet", None)
     return {**told, "phrase": {**told.get("phrase", {}), **{text: cards[text] for text in card if text in cards}}}
 
 

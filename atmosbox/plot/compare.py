@@ -1,8 +1,4 @@
-"""Comparison of runs: which of their settings differ, how far their headline numbers differ, and one figure of all.
-
-Read in this order: `difference` (the settings that differ with a label for each run, and the headline numbers of all
-runs with their differences from the first run and the standard errors), `figure` (one figure of all runs).
-"""
+"""Comparison of runs: which of their settings differ, how far their headline numbers differ, and one figure of all."""
 
 from __future__ import annotations
 

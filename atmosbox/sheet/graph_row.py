@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,8 @@ _FRAMES = 20
 """Number of last frames over which a value is averaged, the same as for the gauges of a page."""
 
 
-def until(prepared: Prepared) -> str:
-    """Return the sentence that tells how long to let a run play.
+def until(prepared: Prepared, said: Callable[[str], str] = str) -> str:
+    """Return the sentence that tells how long to let a run play; ``said`` translates it.
 
     Examples
     --------
@@ -30,16 +30,16 @@ def until(prepared: Prepared) -> str:
     """
     setup = build(prepared)
     if setup.ends:
-        return "Let each play until it stops."
+        return said("Let each play until it stops.")
     time = setup.duration * setup.scale.time / to_si(1.0, setup.time_unit)
-    return f"Let each play to {time:.3g} {setup.time_unit}, and pause."
+    return said("Let each play to {}, and pause.").format(f"{float(f'{time:.3g}'):g} {setup.time_unit}")
 
 
-def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
+def graph_rows(runs: Sequence[Trial], said: Callable[[str], str] = str) -> list[dict[str, Any]]:
     """Return the rows of the table: for each measured curve its graph, its name, and a line for each run.
 
     A line has the letter of the run and, if it has been made, the value from the graph, that of theory, and the
-    difference.
+    difference. ``said`` translates names.
     """
     prepared = runs[0].prepared
     panels = prepared.module.panels
@@ -50,22 +50,22 @@ def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
                 continue
             name, shown = (line.x, panel.x_unit) if panel.kind == "profile" else (line.y, panel.y_unit)
             unit = spelled(shown or variable(name).units or "1")
-            curve = f"{line.label}{_where(panel, line)}{f' [{unit}]' if unit else ''}"
+            curve = f"{said(line.label)}, {said(_where(panel, line))}{f' [{unit}]' if unit else ''}"
             theory = _theory(panel, line)
-            lines = [_line(run, panel, line, theory) for run in runs]
-            found.append({"graph": panel.title, "curve": curve, "lines": lines})
+            lines = [tuple(map(said, _line(run, panel, line, theory))) for run in runs]
+            found.append({"graph": said(panel.title), "curve": curve, "lines": lines})
     return found
 
 
 def _where(panel: Panel, line: Line) -> str:
     """Return the phrase that tells where a curve is read."""
     if panel.kind == "line" and line.x == _TIME:
-        return ", at the end"
+        return "at the end"
     if panel.kind == "histogram":
-        return ", at its peak"
+        return "at its peak"
     if line.y == "height":
-        return ", at half the height"
-    return ", at the top" if panel.kind == "profile" else ", in the middle"
+        return "at half the height"
+    return "at the top" if panel.kind == "profile" else "in the middle"
 
 
 def _theory(panel: Panel, line: Line) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from html import escape
 
 from markdown_it.renderer import RendererHTML
@@ -40,34 +40,36 @@ def html(sheet: Worksheet) -> str:
     >>> html(worksheet("lifting-dry")).count("<h1>")
     1
     """
-    title = escape(sheet.title + (": answers" if sheet.answers else ""))
-    body = "".join(_elements(sheet.text, ticked=sheet.answers))
+    title = escape(sheet.title + (f": {sheet.said('answers')}" if sheet.answers else ""))
+    body = "".join(_elements(sheet))
     return (
-        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{title}</title>\n'
+        f'<!doctype html>\n<html lang="{sheet.language}">\n<head>\n<meta charset="utf-8">\n<title>{title}</title>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<style>{_STYLE}</style>\n</head>\n<body>\n<main>\n{body}</main>\n</body>\n</html>\n"
     )
 
 
-def _elements(text: str, *, ticked: bool) -> list[str]:
+def _elements(sheet: Worksheet) -> list[str]:
     """Return the elements of the page, one for each block of the Markdown."""
     made: list[str] = []
-    question = ""
-    for kind, run in itertools.groupby(blocks(text), lambda block: block.kind):
+    question, said = "", sheet.said
+    for kind, run in itertools.groupby(blocks(sheet.text), lambda block: block.kind):
         several = list(run)
         if kind == "hr":  # lines to write on: those of a question become one field
-            name = f"your answer to question {question}"
+            name = said("your answer to question {}").format(question)
             made.append(f'<textarea rows="{len(several)}" aria-label="{name}"></textarea>\n')
             continue
         for block in several:
             numbered = re.match(r"\*\*(\d+)\.\*\*", block.inside[0].content) if block.inside else None
             question = numbered[1] if numbered else question
             if kind == "table_open":
-                made.append(_table([_inline(token) for token in block.inside]))
+                made.append(_table([_inline(token) for token in block.inside], said))
             elif kind == "bullet_list_open":
-                made.append(_choices([_inline(token) for token in block.inside], question, ticked=ticked))
+                name = said("choices of question {}").format(question)
+                made.append(_choices([_inline(token) for token in block.inside], name, ticked=sheet.answers))
             elif kind == "axes":
-                made.append(_axes(*map(escape, block.axes)))
+                x, y = map(escape, block.axes)
+                made.append(_axes(x, y, said))
             else:
                 text = PARSER.renderer.render(block.tokens, PARSER.options, {})
                 made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', text))
@@ -79,26 +81,26 @@ def _inline(token: Token) -> str:
     return RendererHTML(PARSER).renderInline(token.children or [], PARSER.options, {})
 
 
-def _choices(items: Sequence[str], question: str, *, ticked: bool) -> str:
+def _choices(items: Sequence[str], name: str, *, ticked: bool) -> str:
     """Return boxes to tick; in a sheet with answers they show what is right and cannot be changed."""
     rows = []
     for item in items:
         state = (" checked" if item.startswith("[x]") else "") + (" disabled" if ticked else "")
         rows.append(f'<li><label><input type="checkbox"{state}> {item[4:]}</label></li>')
-    return f'<ul aria-label="choices of question {question}">\n' + "\n".join(rows) + "\n</ul>\n"
+    return f'<ul aria-label="{name}">\n' + "\n".join(rows) + "\n</ul>\n"
 
 
-def _table(cells: Sequence[str]) -> str:
+def _table(cells: Sequence[str], said: Callable[[str], str]) -> str:
     """Return the table: each row begins with its quantity and its run, so that it can be understood alone."""
     head, *rows = [cells[first : first + _COLUMNS] for first in range(0, len(cells), _COLUMNS)]
-    made = ['<div class="wide" tabindex="0">\n<table>\n<caption>Measurements</caption>\n<thead><tr>']
+    made = [f'<div class="wide" tabindex="0">\n<table>\n<caption>{said("Measurements")}</caption>\n<thead><tr>']
     made += [f'<th scope="col">{name}</th>' for name in head]
     made.append("</tr></thead>\n<tbody>\n")
     quantity, formula = "", ""
     for label, theory, run, *others in rows:
         quantity, formula = (label, theory) if label else (quantity, formula)
         row = f'<th scope="row">{quantity}</th><td>{formula}</td><td>{run}</td>'
-        named = f"{re.sub('<.*?>', '', quantity)}, run {run}"
+        named = f"{re.sub('<.*?>', '', quantity)}, {said('run')} {run}"
         fields = (
             f'<input type="text" size="9" aria-label="{what}, {named}">' if other in ("", "±") else other
             for what, other in zip(head[3:], others, strict=True)
@@ -107,10 +109,11 @@ def _table(cells: Sequence[str]) -> str:
     return "".join([*made, "</tbody>\n</table>\n</div>\n"])
 
 
-def _axes(x: str, y: str) -> str:
+def _axes(x: str, y: str, said: Callable[[str], str]) -> str:
     """Return empty axes to draw into, with a description."""
+    name = said("Empty axes for a sketch: horizontally {}, vertically {}").format(x, y)
     return (
-        f'<svg role="img" aria-label="Empty axes for a sketch: horizontally {x}, vertically {y}" viewBox="0 0 480 170">'
+        f'<svg role="img" aria-label="{name}" viewBox="0 0 480 170">'
         '<path d="M20 20V145H440" fill="none" stroke="#111" stroke-width="1.5"/>'
         f'<text x="26" y="16" font-size="12">{y}</text>'
         f'<text x="440" y="162" font-size="12" text-anchor="end">{x}</text></svg>\n'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import io
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -108,7 +108,7 @@ def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
     """Return a sheet with a factor on the usual room to write; the foot of each page gives the number of pages."""
     width, height = PAPERS[paper]
     stream = io.BytesIO()
-    title = sheet.title + (" Answers" if sheet.answers else "")
+    title = sheet.title + (f" {sheet.said('Answers')}" if sheet.answers else "")
     document = SimpleDocTemplate(
         stream, pagesize=(width, height), leftMargin=MARGIN, rightMargin=MARGIN, topMargin=0.85 * MARGIN,
         bottomMargin=FOOT, title=title, author="atmosbox", subject=f"{sheet.scene}: {sheet.about}", creator="atmosbox",
@@ -123,7 +123,7 @@ def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
         canvas.drawRightString(width - MARGIN - PADDING, 0.6 * FOOT, f"{document.page} / {pages}")
         canvas.restoreState()
 
-    story = _Layout(width - 2.0 * (MARGIN + PADDING), room).story(sheet, title)
+    story = _Layout(width - 2.0 * (MARGIN + PADDING), room, sheet.said).story(sheet, title)
     document.build(story, onFirstPage=foot, onLaterPages=foot)
     return Printed(stream.getvalue(), document.page)
 
@@ -137,10 +137,12 @@ class _Layout:
         Width of the text [points].
     room
         Height of lines to write on, empty axes and rows of the table, in units of their usual height.
+    said
+        Translates an English text of the layout.
     """
 
-    def __init__(self, width: float, room: float) -> None:
-        self.width, self.room = width, room
+    def __init__(self, width: float, room: float, said: Callable[[str], str]) -> None:
+        self.width, self.room, self.said = width, room, said
         self.body = Style("body", fontName=BODY, fontSize=9.0, leading=11.9, spaceAfter=3.0)
         self.heading = Style("heading", self.body, fontName=BOLD, fontSize=10.5, leading=13.0, spaceBefore=7.0)
         self.title = Style("title", self.body, fontName=BOLD, fontSize=16.0, leading=19.0, spaceAfter=1.0)
@@ -167,9 +169,9 @@ class _Layout:
 
     def story(self, sheet: Worksheet, title: str) -> list[Flowable]:
         """Return the elements of the whole sheet; headings and paragraphs that begin in bold stay with the next one."""
-        name, share = (
-            ("for the lecturer", 0.8) if sheet.answers else ("Name: ___________________   Date: __________", 0.62)
-        )
+        said = self.said
+        blank = f"{said('Name')}: ___________________   {said('Date')}: __________"
+        name, share = (said("for the lecturer"), 0.8) if sheet.answers else (blank, 0.62)
         head = self.table(
             [[self.marked(title, self.title), self.marked(name, self.right)]],
             (share, 1.0 - share),
@@ -198,7 +200,7 @@ class _Layout:
             inside = block.inside
             match block.kind:
                 case "heading_open":
-                    small = inside[0].content == "Measure"
+                    small = inside[0].content == self.said("Measure")
                     yield "heading", self.line(inside[0], self.heading)
                 case "paragraph_open":
                     kind = "begin" if inside[0].content.startswith("**") else "on"
@@ -236,8 +238,9 @@ class _Layout:
     def measurements(self, cells: Sequence[Token]) -> Flowable:
         """Return the table; a formula is below its quantity, and the lines of one quantity stay together."""
         texts = [as_paragraph(cell.children or (), self.cell.fontSize) for cell in cells]
-        (what, below_it, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
-        headed = "quantity, with its formula" if what == "quantity" else f"{what}, and which {below_it}"
+        (what, _, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
+        said = self.said
+        headed = said("quantity, with its formula") if what == said("quantity") else said("graph, and which curve")
         rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in (headed, *names)]]
         style: list[Any] = [
             ("GRID", (0, 0), (-1, -1), 0.4, (GREY,) * 3), ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),

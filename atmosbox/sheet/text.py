@@ -1,7 +1,7 @@
 """The text of a sheet: what a lecturer writes about a scene, read from a file beside the scene.
 
 The file for ``my_scene.py`` is ``my_scene.sheet.toml``. It is data and runs no code. Its texts may contain sums (see
-`sums`) and marks (see `marks`).
+`sums`) and marks (see `marks`). ``my_scene.sheet.de.toml`` has its texts in German.
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from atmosbox import scenarios
-from atmosbox.errors import ConfigError, FileError, shown
+from atmosbox.errors import ConfigError, FileError, Option, shown
 from atmosbox.sheet import marks, sums
 
 SUFFIX = ".sheet.toml"
+LANGUAGES = {"en": "English", "de": "German"}
+"""The languages of a sheet, with their names in English."""
 MOST_CHANGES = 3
 SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}
 """The headings of the groups of questions, by their names in the file."""
@@ -117,6 +119,29 @@ def _table(found: Any, entries: dict[str, tuple[Any, Any]], place: str) -> dict[
     return read
 
 
+_DATA = {"set", "headline", "unit", "runs", "right", "lines", "lab"}
+"""The entries that are no text: a translation has those of the English file."""
+
+
+def _overlaid(english: Any, told: Any, place: str) -> Any:
+    """Return an entry of the English file, not yet checked, with its texts from a translation."""
+    match english, told:
+        case dict(), dict():
+            for name in sorted(told.keys() - (english.keys() - _DATA)):
+                raise ConfigError(f"{place}{shown(name)} is no text of the English file: remove it")
+            kept = _DATA if "theory" in told else {*_DATA, "theory"}  # a formula without words is the same
+            return {
+                name: each if name in kept else _overlaid(each, told.get(name), f"{place}{name}, ")
+                for name, each in english.items()
+            }
+        case list(), list() if len(english) == len(told):
+            pairs = zip(english, told, strict=True)
+            return [_overlaid(*pair, f"{place.rstrip(', ')} {n}, ") for n, pair in enumerate(pairs, 1)]
+        case str(), str():
+            return told
+    raise ConfigError(f"{place.rstrip(', ')} is missing or has other entries than the English file: write it as there")
+
+
 def text_of(module: ModuleType) -> Path | None:
     """Return the file with the text of a scene's sheet; a variant without a file has that of its original scene.
 
@@ -133,10 +158,21 @@ def text_of(module: ModuleType) -> Path | None:
     return None if base is None else text_of(scenarios.load(base))
 
 
-def read(path: str | os.PathLike[str]) -> dict[str, Any]:
+def translated(path: str | os.PathLike[str], language: str) -> Path:
+    """Return the file with the text of a sheet in a language, from that of the English text.
+
+    Examples
+    --------
+    >>> translated("my_scene.sheet.toml", "de").name
+    'my_scene.sheet.de.toml'
+    """
+    return Path(path) if language == "en" else Path(path).with_suffix(f".{language}.toml")
+
+
+def read(path: str | os.PathLike[str], language: str = "en") -> dict[str, Any]:
     """Read the text of a sheet: the entries of its file, and the defaults of those that it does not have.
 
-    Its sums are not yet worked out.
+    Its sums are not yet worked out. In another language than English, its texts are those of a second file.
 
     Examples
     --------
@@ -144,8 +180,16 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     Traceback (most recent call last):
     atmosbox.errors.FileError: The words of the sheet cannot be read from no/such.sheet.toml: No such file or directory.
     """
+    translation = translated(path, language)
+    if language != "en" and not translation.is_file():
+        missing = f"This scene has no worksheet in {LANGUAGES[language]} (no file {translation.name})"
+        raise FileError(missing, "leave ", Option("language"), " out")
     try:
-        return _table(tomllib.loads(Path(path).read_text(encoding="utf-8")), _SHEET, "")
+        found = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        if language != "en":
+            path = translation
+            found = _overlaid(found, tomllib.loads(path.read_text(encoding="utf-8")), "")
+        return _table(found, _SHEET, "")
     except OSError as error:
         raise FileError(f"The words of the sheet cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -12,13 +13,15 @@ from typing import Any
 import jinja2
 
 from atmosbox.errors import ConfigError
+from atmosbox.page.document import phrase
+from atmosbox.page.page_file import check_choice
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.generic import WORDS, AnyScene, left_out
 from atmosbox.sheet.graph_row import graph_rows, until
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, bare, filled, fixed, measured, spelled, theoretical
-from atmosbox.sheet.text import SECTIONS, Change, read, text_of
+from atmosbox.sheet.text import LANGUAGES, SECTIONS, Change, read, text_of, translated
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
@@ -52,6 +55,8 @@ class Worksheet:
         Its runs; a sheet for pages needs a page for each.
     lab
         Whether it is a sheet for pages.
+    language
+        Its language, "en" or "de".
     """
 
     scene: str
@@ -62,6 +67,11 @@ class Worksheet:
     disagreements: tuple[str, ...] = ()
     runs: tuple[Trial, ...] = ()
     lab: bool = False
+    language: str = "en"
+
+    def said(self, text: str) -> str:
+        """Return an English text of the layout in the language of the sheet."""
+        return phrase(self.language, text)
 
 
 def worksheet(
@@ -71,6 +81,7 @@ def worksheet(
     engine: str | None = None,
     answers: bool = False,
     lab: bool = False,
+    language: str = "en",
     progress: Callable[[float, str], None] | None = None,
 ) -> Worksheet:
     """Return the sheet of a scene, for students or with the answers.
@@ -89,6 +100,8 @@ def worksheet(
     lab
         Whether the sheet is done with a page for each run (see `atmosbox.lab`). It then names buttons in place of
         commands, and asks for values that are read off graphs in place of headline numbers.
+    language : {"en", "de"}
+        The language of the sheet.
     progress
         Called with the share that is done and a short text on the present step.
 
@@ -100,7 +113,8 @@ def worksheet(
     Raises
     ------
     AtmosboxError
-        If the scene, a setting or the text of the sheet is refused, or a run fails.
+        If the scene, a setting or the text of the sheet is refused, the scene has no text in the language, or a run
+        fails.
 
     Examples
     --------
@@ -108,9 +122,11 @@ def worksheet(
     >>> sheet.about
     'N = 500, seed 7'
     """
+    check_choice("language", language, tuple(LANGUAGES))
     first = runner.prepare(scene, settings or {}, engine=engine)
     path = text_of(first.module) or WORDS
-    words = read(path)
+    words = read(path, language)
+    path = translated(path, language)
     alone = _Filling(path, trials(first, ()))
     changes = [Change(**alone.all(each, f"change {n}")) for n, each in enumerate(words["change"], 1)]
     runs = trials(first, changes)
@@ -118,7 +134,7 @@ def worksheet(
     if due and path != WORDS:
         _Filling(path, runs).sheet(words)  # a mistake is refused before time is spent on a run
     runs = (*execute(runs[:due], progress), *runs[due:])
-    return _written(path, words, runs, answers, lab)
+    return _written(path, words, runs, answers, lab, language)
 
 
 class _Filling:
@@ -133,10 +149,11 @@ class _Filling:
     answers
         Whether answers are given.
     differs
-        Whether the settings are not those for which the text was written, so that a sum in an answer may fail.
+        What is printed in place of an answer in which a sum fails, if the settings are not those for which the text
+        was written.
     """
 
-    def __init__(self, path: Path, runs: Sequence[Trial], *, answers: bool = False, differs: bool = False) -> None:
+    def __init__(self, path: Path, runs: Sequence[Trial], *, answers: bool = False, differs: str = "") -> None:
         self.path, self.answers, self.differs = path, answers, differs
         scene: dict[str, Facts] = {"scene": AnyScene(runs)} if path == WORDS else {}
         self.after = {run.letter: run for run in runs} | scene
@@ -162,65 +179,71 @@ class _Filling:
                     return filled(value, self.after if answer else self.before, setting=", set, " in place)
                 except ConfigError as error:
                     if answer and self.differs:
-                        return _NOT_HERE
+                        return self.differs
                     raise ConfigError(f"{self.path}: {place}: {error}; see docs/sheet.md.") from error
         return value
 
 
-def _written(path: Path, words: dict[str, Any], runs: Sequence[Trial], answers: bool, lab: bool) -> Worksheet:
+def _written(
+    path: Path, words: dict[str, Any], runs: Sequence[Trial], answers: bool, lab: bool, language: str
+) -> Worksheet:
     """Return the sheet as Markdown, with what belongs to it."""
-    first = runs[0].prepared
+    said, first = functools.partial(phrase, language), runs[0].prepared
     differs = bool(first.settings.changed().keys() - {"seed"}) or bool(first.unusual_engine)
-    content = _Filling(path, runs, answers=answers, differs=differs).sheet(words)
-    content["leaves_out"] = content["leaves_out"] or left_out(first.module.__doc__ or "").replace("<", "&lt;")
+    content = _Filling(path, runs, answers=answers, differs=said(_NOT_HERE) if differs else "").sheet(words)
+    story = first.module.__doc__ or "" if language == "en" else ""
+    content["leaves_out"] = content["leaves_out"] or left_out(story).replace("<", "&lt;")
     for name in ("predict", *SECTIONS) if lab else ():
         content[name] = [each for each in content[name] if each["lab"] and _COMMAND not in each["ask"]]
     if lab and build(first).knobs:
-        content["try"] = [*content["try"], {"ask": _KNOBS, "answer": "", "lines": 4}]
-    content |= {"lab": lab, "graphs": graph_rows(runs) if lab else []}
+        content["try"] = [*content["try"], {"ask": said(_KNOBS), "answer": "", "lines": 4}]
+    content |= {"lab": lab, "graphs": graph_rows(runs, said) if lab else []}
     if lab:
         content["row"] = []
     elif not words["row"]:
         found = [each for each in runs[0].headlines.values() if each.resolved and not each.program]
         content["row"] = [
-            {"headline": h.name, "label": h.label, "unit": h.display_unit, "theory": "", "runs": "ABCD"} for h in found
+            {"headline": h.name, "label": said(h.label), "unit": h.display_unit, "theory": "", "runs": "ABCD"}
+            for h in found
         ]
+    labels = {row["headline"]: row["label"] for row in content["row"]}
     for row in content["row"]:
         unit = spelled(row["unit"])
         row["label"] += f" [{unit}]" if unit else ""
-        row["lines"] = [_line(run, row["headline"], answers) for run in runs if run.letter in row["runs"]]
+        row["lines"] = [_line(run, row["headline"], answers, said) for run in runs if run.letter in row["runs"]]
     off = [(run, each) for run in runs for each in run.headlines.values() if each.agrees is False and not lab]
-    disagreements = [f"Run {run.letter} disagrees with theory: {each.label}." for run, each in off]
-    remarks = [*_excuses(runs, {row["headline"] for row in content["row"]}), *disagreements]
-    title, about = getattr(first.module, "title", first.scene), _about(first, answers)
-    template = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined).from_string(
-        Path(__file__).with_name("sheet.md.jinja").read_text(encoding="utf-8")
-    )
-    text = template.render(
+    disagrees = said("Run {} disagrees with theory: {}.")
+    disagreements = [disagrees.format(run.letter, labels.get(each.name, said(each.label))) for run, each in off]
+    remarks = [*_excuses(runs, labels, said), *disagreements]
+    title, about = said(getattr(first.module, "title", first.scene)), _about(first, answers, said)
+    environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters["said"] = said
+    layout = Path(__file__).with_name("sheet.md.jinja").read_text(encoding="utf-8")
+    text = environment.from_string(layout).render(
         content, scene=first.scene, title=title, about=about, answers=answers, runs=runs,
         sections=SECTIONS, questions={name: content[name] for name in SECTIONS},
-        until=until(runs[0].prepared) if lab else "",
-        remarks=[*remarks, *([_WITH_CARE] if differs else [])] if answers else [], ticked=answers and not differs,
+        until=until(runs[0].prepared, said) if lab else "",
+        remarks=[*remarks, *([said(_WITH_CARE)] if differs else [])] if answers else [], ticked=answers and not differs,
     )  # fmt: skip
     text = re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
-    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements), tuple(runs), lab)
+    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements), tuple(runs), lab, language)
 
 
-def _about(first: runner.Prepared, answers: bool) -> str:
+def _about(first: runner.Prepared, answers: bool, said: Callable[[str], str]) -> str:
     """Return the line below the title: number of molecules, seed and engine."""
     molecules = getattr(first.settings, "molecules", None)
     parts = [] if molecules is None else [f"N = {molecules}"]
-    parts.append(f"seed {first.settings.seed}")
-    parts += [f"engine {first.unusual_engine}"] if first.unusual_engine else []
+    parts.append(said("seed {}").format(first.settings.seed))
+    parts += [said("engine {}").format(first.unusual_engine)] if first.unusual_engine else []
     return ", ".join([*parts, f"atmosbox {__version__}"] if answers else parts)
 
 
-def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
+def _line(run: Trial, name: str, answers: bool, said: Callable[[str], str]) -> tuple[str, str, str, str]:
     """Return the line of a run for a quantity: letter, measurement, theory, difference over error; empty to fill in."""
     if not answers:
         return run.letter, "±", "", ""
     if name not in run.headlines or not run.headlines[name].resolved:
-        return run.letter, "not reported", "–", "–"
+        return run.letter, said("not reported"), "–", "–"
     found = run.fact(name)
     theory = "–" if found.theory is None else theoretical(found.theory, found.s)
     known = found.theory is not None and found.s > 0.0
@@ -228,13 +251,14 @@ def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
     return run.letter, measured(found.n, found.s), theory, misfit
 
 
-def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
+def _excuses(runs: Sequence[Trial], labels: Mapping[str, str], said: Callable[[str], str]) -> list[str]:
     """Return sentences on numbers that agree with theory only with the stated model error, and its reason."""
     stated = [(run, each) for run in runs for each in run.headlines.values() if each.verdict == AS_STATED]
     found = []
     for run, each in stated:
-        if each.name in rows:
+        if each.name in labels:
             known = bare(from_si(each.known, each.display_unit, difference=True), 2)
-            allowed = f"{each.label} in run {run.letter} (up to {known} {spelled(each.difference_unit)}".rstrip()
-            found.append(f"More than four standard errors: {allowed}), because {each.excuse}.")
+            allowed = f"{known} {spelled(each.difference_unit)}".rstrip()
+            sentence = said("More than four standard errors: {} in run {} (up to {}), because {}.")
+            found.append(sentence.format(labels[each.name], run.letter, allowed, said(each.excuse)))
     return found

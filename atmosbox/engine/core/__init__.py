@@ -12,17 +12,14 @@
 `refusal`       the errors
 `inputs`        checks of the numbers that a box is given
 `packing`       packing fraction: the part of the space that molecules fill
-`energy_budget`  the terms of the energy budget, and how much is missing from it
-`account`       the tallies of a box, and whether its energy budget closes
+`account`       the tallies of a box, the terms of its energy budget, and whether it closes
 `saved_state`   the state of a box as named arrays and plain numbers, for copies and files
 `adjustment`    changes by hand during a run: piston, heat baths, gravity
 `parcel`        the box: its parameters, its state, and the driver of its piston
-`box`           the box in the form that the kernels take
 `kind`          kinds: molecules of equal mass, size and rotation
 `marching`      a box that is advanced in equal time steps
 `measure`       temperature, layers, speeds and mean free path, computed from the molecules
-`course`        how far along its planned ascent a parcel is
-`lift`          a piston that follows a pressure
+`lift`          a piston that follows a pressure on a planned ascent
 `jit`           how a kernel is compiled when it is first called
 `compiler`      how numba compiles a kernel: all that goes beyond its documented interface
 `kernel_cache`  where the machine code is kept, and reports of compilations

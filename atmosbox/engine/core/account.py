@@ -172,7 +172,7 @@ class Account(ABC):
         return kinetic, rotational, potential
 
     def budget(self) -> dict[str, float | Array]:
-        """Return the terms of the energy budget now, by their names in a file [energy]; see `energy_budget`."""
+        """Return the terms of the energy budget now, by their names in a file [energy]."""
         stored = zip(STORES, (*self.energy(), self.condensed_energy), strict=True)
         return dict(stored) | {name: getattr(self, held) for name, held in GIVEN.items()}
 

@@ -16,7 +16,7 @@ part                 what it gains                                       what to
 no wrappers          compiling takes a sixth less                        leave out the two options
 `by_reference`       compiling takes up to an eighth less                return the NamedTuple itself
 `prefetch`           the pace of 50,000 molecules is 5 to 10 % higher    let it do nothing
-`screen_of`          the pace is 1.3 to 1.6 times as high                compile `screening.screen` as a loop
+`screen_of`          the pace is 1.3 to 1.6 times as high                compile `rows.screen` as a loop
 `lowest_bit`         one instruction in place of a loop                  shift and count
 `LlvmText`           the kernels of the lab page                         only ``tools/wasm.py`` needs it
 ===================  ==================================================  ==============================================
@@ -458,7 +458,7 @@ def lowest_bit(typing_context, bits):
 
 
 def screen_of(size, tiny):
-    """Return `screening.screen` in vector instructions, for ``size`` copies at once."""
+    """Return `rows.screen` in vector instructions, for ``size`` copies at once."""
 
     @intrinsic
     def screen(typing_context, values, first, mixed, place, velocity, since, slack, within):

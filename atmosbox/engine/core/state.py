@@ -124,7 +124,7 @@ class Copies(NamedTuple):
     the memory of the events, read as bytes. ``centre : (axis, cell)`` [length] are the centres of the cells;
     ``horizon : (layer,)`` is how far ahead contacts are searched [time]. ``slack : (layer, 3)`` bounds the errors of
     the copies; ``epoch : (4,)`` holds the times from which and until which [time], and the speed [length/time] up to
-    which, these bounds hold: see `screening`. ``room : (layer,)`` [length^3; planar: length^2] and ``radius``
+    which, these bounds hold: see `rows`. ``room : (layer,)`` [length^3; planar: length^2] and ``radius``
     [length] of a usual molecule tell how dense a layer is.
     """
 

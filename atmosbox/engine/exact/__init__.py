@@ -4,15 +4,15 @@
 `cells`        which molecules can meet
 `calendar`     which event is the next one
 `encounter`    the change of velocity at a contact or a wall hit
-`screening`    a quick test of eight molecules at once: which of them can be met at all
-`rows`         the contents of the rows of cells
+`rows`         the contents of the rows of cells, and a quick test of eight members at once
 `search`       the search for a molecule's next contact
 `prediction`   the next events of a molecule: contact, cell boundary, wall
 `membership`   which molecules are in which cells
 `crossing`     from cell to cell, where rows are lists of molecules
 `turning`      the piston of a lift gets new velocities between events
 `exact`        the loop over events
-`epoch`        setting all clocks back, so that they always read small numbers
+`layout`       the present cells of a box, and how they change
+`advance`      the loop, and what happens between its stops: in Python and in the page
 `stall`        why time can go no further
 `parcelset`    the box, advanced exactly
 `reference`    the same model, slow and simple: the tests compare with it

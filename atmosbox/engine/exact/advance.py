@@ -3,10 +3,7 @@
 All times that the engine works with are local: they count from ``Walls.epoch``. When the next event lies further ahead
 of that than the length of an epoch, all clocks are set back by whole epochs.
 
-Python runs these functions as they are written; the kernels of the lab's page compile them. ``clocks`` are the times of
-events that belong to no molecule: those of a liquid, or of a bath.
-
-Advance a box: the loop over events, and what happens between its stops.
+``clocks`` are the times of events that belong to no molecule: those of a liquid, or of a thermostat.
 
 The engine's loop stops on the way because an epoch of its clocks is over, the copies in the rows of cells are too old,
 a row is full, or the cells no longer fit the box. Python runs these functions as they are written, and the lab's page
@@ -76,7 +73,7 @@ class Book(NamedTuple):
     """The data of a box besides its gas.
 
     ``now : (1,)`` is the time that its clocks show [time]; ``epoch_length : (1,)`` the time after which they are set
-    back [time]; ``clocks`` those of events that are not events of a molecule [time], see `epoch`; ``turn : (1,)`` the
+    back [time]; ``clocks`` those of events that are not events of a molecule [time], see the head of this file; ``turn : (1,)`` the
     time since the start at which Python sets the velocity of the piston next [time], ``inf`` if it never does;
     ``energy : (1,)`` the energy at the start [energy]; ``moisture`` the liquid, 0 if there is none.
     """

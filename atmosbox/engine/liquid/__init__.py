@@ -2,13 +2,11 @@
 
 `substance`         the condensing substance, and the forms of its liquid
 `reservoir`         the condensed molecules, and the laws of exchange
-`insertion`         free places for molecules that evaporate
-`phase`             a molecule leaves the box, or enters it
+`insertion`         a molecule leaves the box, or enters it at a free place
 `moist_account`     the properties and tallies of a box with liquid
 `moist`             the loop over events, with a mist or a pool
 `moist_parcelset`   the box of moist air, advanced exactly
-`drop_shape`        drops as bodies
-`curvature`         the effects of a drop's surface and of salt dissolved in it
+`drop_shape`        drops as bodies, and the effects of their surface and of salt dissolved in them
 `drop`              the loop over events, with drops
 `drop_parcelset`    the box with drops, advanced exactly
 """

@@ -7,7 +7,7 @@ motion stays with it. Two drops that touch become one, and the energy of their a
 
 The drop that a molecule leaves is drawn with a weight that is the surface after it has left. So a drop of n molecules
 loses one as often as a drop of n - 1 catches one, and detailed balance holds again. Drops with a surface energy, or
-with salt in them, each lose molecules at a rate of their own: see `curvature`.
+with salt in them, each lose molecules at a rate of their own: see `drop_shape`.
 """
 
 import functools

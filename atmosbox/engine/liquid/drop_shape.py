@@ -63,7 +63,7 @@ class DropRecords(NamedTuple):
     ``record``, ``held : (drop,)``: their indices among the molecules, and the number of molecules in each; ``cube``,
     ``core : (drop,)``: cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)``: 0 once another
     drop has absorbed it; ``solute : (drop,)``: number of dissolved particles in each, ``rate : (drop,)``: rate at
-    which molecules leave it [1/time], see `curvature`; ``merged : (1,)``: number of mergers; then cube of
+    which molecules leave it [1/time], see the head of this file; ``merged : (1,)``: number of mergers; then cube of
     the radius in a drop, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether the
     rate at which drops lose molecules depends on their surface area alone.
     """

@@ -145,7 +145,7 @@ class Drops(Liquid):
 
     Each drop has a nucleus and a number of molecules; all drops have one temperature. The molecules in the liquid at
     the start are shared evenly among them. Without surface tension and dissolved particles the vapour pressure over
-    drops is that over a flat surface; see `curvature`.
+    drops is that over a flat surface; see `drop_shape`.
 
     Parameters
     ----------

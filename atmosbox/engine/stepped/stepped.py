@@ -24,7 +24,7 @@ The time-stepped engine: all molecules move, then those that overlap and approac
 
 Simple programs work in this way, the applets of many courses among them. A step of length :math:`\Delta t` has two
 parts: every molecule moves as if it were alone (`flight`); every pair that now overlaps, and still approaches, gets
-the impulse of a collision (`collide`). A collision comes late by up to one step, so the pair is nearer than it should
+the impulse of a collision. A collision comes late by up to one step, so the pair is nearer than it should
 be, and a pair that grazes may move apart before it is found. In a dilute gas this makes, with
 :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`,
 
@@ -204,7 +204,7 @@ def collide(high, step, gas, modes):
 class Step(NamedTuple):
     """One step: its start and length [time], height [length] and velocity of the ceiling at its start, and the rules.
 
-    The rules are numbers: ``motion`` for the fall and ``smooth_walls`` (`flight`), ``rule`` for pairs (`collide`).
+    The rules are numbers: ``motion`` for the fall and ``smooth_walls`` (`flight`), ``rule`` for pairs.
     """
 
     time: float

@@ -1,6 +1,6 @@
 """Measurements in a page: thermometer, barometer, layers, speeds, light and heavy discs, a rising parcel, mixing.
 
-These kernels compute the sums of `atmosbox.scene.instruments`. `lab_plan` says which of them are shown and in which
+These kernels compute the sums of `atmosbox.scene.instruments`. `plan` says which of them are shown and in which
 unit; the averages of many frames are in `averaging`.
 """
 

@@ -1,4 +1,4 @@
-"""What a page draws of a box: molecules as `atmosbox.page.frame` wants them, and the liquid as `page_liquid` does."""
+"""What a page draws of a box: molecules as `atmosbox.page.frame` wants them, and the liquid as that file draws it."""
 
 import functools
 import math

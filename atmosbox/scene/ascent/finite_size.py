@@ -63,7 +63,7 @@ def _planned_cloud(ascent: MoistAscent, ideal: bool) -> Cloud:
 def drift(ascent: MoistAscent, *, ideal: bool) -> Drift:
     r"""Return how far a parcel is known to be from its adiabat along its ascent.
 
-    An entropy gain :math:`\delta S` warms the parcel by :math:`T \, \delta S / C_p`, see `dissipation`; vapour and heat
+    An entropy gain :math:`\delta S` warms the parcel by :math:`T \, \delta S / C_p`, see `random_walk`; vapour and heat
     on their way to the liquid lag behind it by :math:`(L G)^{-1} \dot x`, see `near_equilibrium`.
 
     Parameters

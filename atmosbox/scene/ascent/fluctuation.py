@@ -5,9 +5,9 @@ same side. Three parts follow from the molecules.
 
 * **Vapour and heat** that have not yet reached the liquid, or have not yet left it: `near_equilibrium` gives the
   scatter of x and how fast x relaxes, :math:`C(t) = e^{-L G t} G^{-1}`. This part decays within a frame or two.
-* **Entropy** that has been gained at random: `dissipation` gives the growth of its variance. At a given pressure it
+* **Entropy** that has been gained at random: `random_walk` gives the growth of its variance. At a given pressure it
   shows in the temperature as :math:`\delta T = T \, \delta S / C_p`, where C_p includes the heat of condensation.
-* **Rain**, if it rains: rain that has fallen by chance does not evaporate again, see `raining`.
+* **Rain**, if it rains: rain that has fallen by chance does not evaporate again, see `random_walk`.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ Here :math:`\Phi(a)` is the share of the time in which there is a surplus, the m
 \rangle = m \Phi(a) + s \varphi(a)`, it rains one molecule after the other, and x has the correlation time :math:`\tau`.
 In Hermite polynomials the integral is :math:`s^2 \tau [\Phi^2 + \varphi^2 \sum_{k \geq 2} He_{k-2}^2(a) / k \, k!]`,
 with :math:`s^2 \tau = (G^{-1} L^{-1} G^{-1})_{nn}`. So R is zero before it rains, follows the surplus while it rains,
-and keeps its value afterwards. The entropy does the random walk of `dissipation`; in addition, water that is missing
+and keeps its value afterwards. The entropy does the random walk described above; in addition, water that is missing
 would have changed its entropy with the temperature, :math:`dS = c_l R \, d \ln T`.
 
 **How they change the temperature.** At a given pressure a cloud is warmer by :math:`T S / C_p`, whatever has rained.
