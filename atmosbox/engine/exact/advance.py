@@ -73,8 +73,8 @@ class Book(NamedTuple):
     """The data of a box besides its gas.
 
     ``now : (1,)`` is the time that its clocks show [time]; ``epoch_length : (1,)`` the time after which they are set
-    back [time]; ``clocks`` those of events that are not events of a molecule [time], see the head of this file; ``turn : (1,)`` the
-    time since the start at which Python sets the velocity of the piston next [time], ``inf`` if it never does;
+    back [time]; ``clocks`` those of events that belong to no molecule [time]; ``turn : (1,)`` the time since the start
+    at which Python sets the velocity of the piston next [time], ``inf`` if it never does;
     ``energy : (1,)`` the energy at the start [energy]; ``moisture`` the liquid, 0 if there is none.
     """
 

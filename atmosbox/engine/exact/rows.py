@@ -173,7 +173,7 @@ def row_stride(places, mixed):
 
 @kernel(plain=True)
 def _farthest(edge, k, wraps):
-    """Return the largest distance along an axis of a member of cell k from its centre: W at the head of this file [length].
+    """Return the largest distance along an axis of a member of cell k from its centre, W above [length].
 
     A member may also be anywhere in a neighbour of the cell.
     """
@@ -406,7 +406,7 @@ def own_place(i, bit, copies):
 
 @kernel
 def _new_epoch(now, fastest, usual, copies, gravity):
-    """Begin an epoch for molecules of this greatest speed and root mean square speed: see the head of this file for its bounds.
+    """Begin an epoch for molecules of this greatest speed and root mean square speed, with the bounds above.
 
     A few molecules much faster than the others do not shorten the epoch: their copies are NaN.
     """

@@ -38,7 +38,7 @@ class SteppedParcel(MarchingParcel):
         Length of a step [time], instead of ``delta``; it is needed if all diameters are 0.
     rule
         Which pairs collide, and how they are found: "pairwise", "index-order", "look-ahead" or "every-overlap": see
-        `collide`.
+        `stepped`.
     motion
         Rule for the fall: "parabola" (exact) or "euler": see `flight`.
     smooth_walls
