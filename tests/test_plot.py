@@ -103,7 +103,7 @@ def drawings(runs):
     return made
 
 
-SHOWN_IN = {"degC": (1.0, -273.15), "hPa": (1e-2, 0.0), "km": (1e-3, 0.0)}
+SHOWN_IN = {"K": (1.0, 0.0), "degC": (1.0, -273.15), "hPa": (1e-2, 0.0), "km": (1e-3, 0.0)}
 
 
 def test_every_curve_of_every_profile_shows_the_numbers_of_its_variables(runs, drawings):

@@ -14,7 +14,7 @@ import jinja2
 
 from atmosbox.errors import ConfigError
 from atmosbox.page.document import phrase
-from atmosbox.page.page_file import check_choice
+from atmosbox.page.saved_run import check_choice
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.generic import WORDS, AnyScene, left_out
