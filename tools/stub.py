@@ -28,7 +28,7 @@ from atmosbox.interface import plot as plot
 from atmosbox.interface import scenes as scenes
 from atmosbox.interface import show as show
 from atmosbox.interface import sweep as sweep
-from atmosbox.interface.notebook import Show
+from atmosbox.interface.run_dataset import Show
 from atmosbox.interface.run_dataset import RunDataset
 from atmosbox.version import __version__ as __version__
 

@@ -1,7 +1,6 @@
 """The public functions of `atmosbox`, which scripts and notebooks call.
 
-Read in this order: `notebook` (detects a notebook, and shows progress in it), `run_dataset` (a dataset that prints
-its results first), `measurement` (`scenes`, `run`, `resume`, `open`, `sweep`), `drawing` (`plot`, `compare`, `show`).
+Read in this order: `run_dataset` (a dataset that prints its results first, and progress in a notebook), `measurement` (`scenes`, `run`, `resume`, `open`, `sweep`), `drawing` (`plot`, `compare`, `show`).
 Large libraries are imported when a function needs them.
 """
 

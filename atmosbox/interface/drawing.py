@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from atmosbox.errors import SettingError
-from atmosbox.interface.notebook import in_notebook, preformatted
+from atmosbox.interface.run_dataset import in_notebook, preformatted
 
 if TYPE_CHECKING:
     import xarray as xr

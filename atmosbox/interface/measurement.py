@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.interface.notebook import Show, preformatted, progress_bar
+from atmosbox.interface.run_dataset import Show, preformatted, progress_bar
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,11 +1,15 @@
-"""A run as Python prints it: first its results with theory beside them, then the variables of its dataset."""
+"""A run as Python prints it: first its results with theory beside them; and its progress in a notebook."""
 
 from __future__ import annotations
 
+import contextlib
+import html
+import sys
+import time
+from collections.abc import Callable, Iterator
+
 import numpy as np
 import xarray as xr
-
-from atmosbox.interface.notebook import preformatted
 
 _WIDTH = 110
 
@@ -67,3 +71,88 @@ def _results(dataset: xr.Dataset) -> list[str]:
     if dataset.sizes.get("elapsed_time", 0) and "ledger_residual" in dataset:
         notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values)), LEDGER_LIMIT))
     return [head, "", *headline_lines(headlines, _WIDTH), "", *notes, ""]
+
+
+Show = Callable[[float, str], None]
+
+
+def in_notebook() -> bool:
+    """Return whether this program runs in a notebook, whose cells show HTML.
+
+    Examples
+    --------
+    >>> in_notebook()
+    False
+    """
+    ipython = sys.modules.get("IPython")  # a notebook has imported IPython
+    shell = ipython.get_ipython() if ipython is not None else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def preformatted(text: str) -> str:
+    """Return text as HTML that keeps its columns.
+
+    Examples
+    --------
+    >>> preformatted("p < 1 bar").partition(">")[2]
+    'p &lt; 1 bar</pre>'
+    """
+    return f'<pre style="line-height:1.35;font-size:90%;overflow-x:auto">{html.escape(text)}</pre>'
+
+
+@contextlib.contextmanager
+def progress_bar(name: str, progress: Show | bool | None = None) -> Iterator[Show | None]:
+    """Show the progress of a run: in a notebook below its cell, on a terminal in the last line, elsewhere not at all.
+
+    Parameters
+    ----------
+    name
+        The name of what runs.
+    progress
+        A function to call instead of showing a bar, with the share that is done and the name of the present step;
+        False to show nothing; True to show progress elsewhere too.
+
+    Yields
+    ------
+    callable or None
+        The function that the run calls; None if nothing is shown.
+    """
+    if callable(progress):
+        yield progress
+    elif progress is False:
+        yield None
+    elif in_notebook():
+        with _notebook_bar(name) as show:
+            yield show
+    elif progress or (sys.stderr is not None and sys.stderr.isatty()):
+        from atmosbox.text.progress import progress as terminal_bar
+
+        with terminal_bar(name, quiet=False) as show:
+            yield show
+    else:
+        yield None
+
+
+@contextlib.contextmanager
+def _notebook_bar(name: str) -> Iterator[Show]:
+    """Show a bar below the cell until the run ends."""
+    from IPython.display import HTML, display
+
+    began = time.monotonic()
+    handle = display(HTML(_bar(name, 0.0, "", 0.0)), display_id=True)
+
+    def show(share: float, doing: str) -> None:
+        word = "" if doing in ("running", "done") else doing
+        handle.update(HTML(_bar(name, share, word, time.monotonic() - began)))
+
+    try:
+        yield show
+    finally:
+        handle.update(HTML(""))
+
+
+def _bar(name: str, share: float, doing: str, seconds: float) -> str:
+    """Return the bar as HTML: its name, the share that is done, and the remaining time."""
+    said = html.escape(f"{name}: {doing}" if doing else name)
+    left = f"{seconds * (1.0 - share) / share:.0f} s to go" if share > 0.02 and seconds > 1.0 else ""
+    return f'<label>{said} <progress max="1" value="{share:.3f}"></progress> {100.0 * share:.0f} % {left}</label>'

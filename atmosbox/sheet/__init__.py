@@ -4,9 +4,9 @@ The text of a sheet is in a file beside its scene, ``my_scene.sheet.toml``; for 
 made from its model card and its headlines.
 
 Read in this order: `text` (the text, read from its file) with `sums` and `marks` (which sums and marks a text may
-contain, and how numbers are printed), `sheet_run` (the runs), `generic` (the text for any scene), `worksheet` (text and
-runs together as Markdown, by the template ``sheet.md.jinja``), `pdf` and `html` (the Markdown on paper and as a web
-page), `sheet_file` (the file).
+contain, and how numbers are printed), `sheet_run` (the runs), `worksheet` (text and runs together as Markdown, by the
+template ``sheet.md.jinja``, and the text for any scene), `pdf` and `html` (the Markdown on paper and as a web page),
+`sheet_file` (the file).
 """
 
 from atmosbox.sheet.pdf import PAPERS
