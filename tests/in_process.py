@@ -6,8 +6,6 @@ from typer import testing
 
 from atmosbox.cli import app
 
-__all__ = ["COMMAND", "typed"]
-
 COMMAND = typer.main.get_command(app)
 
 

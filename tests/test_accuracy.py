@@ -8,11 +8,9 @@ import warnings
 import numpy as np
 import pytest
 from scipy import stats
-from typer.testing import CliRunner
 
 import atmosbox
 from atmosbox import scenarios
-from atmosbox.cli import app
 from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
@@ -21,6 +19,7 @@ from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, parse
 from atmosbox.trade import timed_run
+from tests.in_process import typed
 
 
 def way(engine="exact", cost=1.0, kelvin=0.1, share=0.001, bias=0.0, **settings):
@@ -56,7 +55,7 @@ def hand_made(monkeypatch):
 
 
 def command(*words):
-    return CliRunner().invoke(app, list(words), env={"COLUMNS": None})
+    return typed(*words, COLUMNS=None)
 
 
 # What is asked for
@@ -210,13 +209,23 @@ def test_every_target_has_a_pick_in_every_measured_scene():
         assert picked.met == (target == "reference" or picked.way.excess(TARGETS[target]) <= 1.0)
 
 
-def hold(scene, held, members):
-    """Hold a way of running a scene to a fresh measurement with other seeds.
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("scene", "held"),
+    [
+        pytest.param(scene, one, id=f"{scene}, {one.label}")
+        for scene, table in accuracy.load().items()
+        for one in table.ways
+    ],
+)
+def test_every_way_of_the_shipped_table_is_what_a_fresh_measurement_finds(scene, held):
+    """Each is measured again with other seeds.
 
     Both measurements estimate their noise from the scatter of the seeds, so the bias is judged by Student's
     distribution (Welch) and the noise by Fisher's, both at the odds of four standard errors: a table that is right
     is called wrong with a probability of 6e-5 for each bias and each noise.
     """
+    members = 8
     way = timed_run.Way(held.engine, held.settings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
@@ -234,16 +243,3 @@ def hold(scene, held, members):
         freedoms = members - 1, held.members - 1
         low, high = stats.f.ppf(tail, *freedoms), stats.f.isf(tail, *freedoms)
         assert low <= (noise / known.noise) ** 2 <= high, (held.label, name, noise, known)
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize(
-    ("scene", "held"),
-    [
-        pytest.param(scene, one, id=f"{scene}, {one.label}")
-        for scene, table in accuracy.load().items()
-        for one in table.ways
-    ],
-)
-def test_every_way_of_the_shipped_table_is_what_a_fresh_measurement_finds(scene, held):
-    hold(scene, held, members=8)

@@ -25,7 +25,6 @@ from atmosbox.plot.curve import curve
 from atmosbox.plot.run_figure import panels_of
 from atmosbox.scene.panels import Line, Panel, to_json
 from atmosbox.simulation.recording import Recording
-from tests.conftest import SMALL_RUNS
 from tests.in_process import typed
 
 TIME = Line("elapsed_time", "air_temperature", "thermometer", error="air_temperature_se")
@@ -87,11 +86,6 @@ def tick_texts(axis):
     drawn = [tick for tick in axis.get_major_ticks() if low - room <= tick.get_loc() <= high + room]
     labels = [label for tick in drawn for label in (tick.label1, tick.label2) if label.get_visible()]
     return [label for label in labels if label.get_text()]
-
-
-@pytest.fixture(scope="module")
-def runs(small_run):
-    return {scene: small_run(scene) for scene in SMALL_RUNS}
 
 
 @pytest.fixture(scope="module")
@@ -254,12 +248,8 @@ def test_each_format_is_what_it_says_and_carries_the_settings_of_its_run(tmp_pat
     assert b"CreationDate" not in pdf.read_bytes()
 
 
-def broken(**changes):
-    run = small([280.0, 290.0])
-    return run.assign_attrs(changes)
-
-
 def test_a_file_that_cannot_be_drawn_is_refused_in_a_sentence():
+    broken = small([280.0, 290.0]).assign_attrs
     cases = [
         (xr.Dataset(), "atmosbox did not write it"),
         (broken(atmosbox_panels="[]"), "not in the form that atmosbox writes"),

@@ -9,8 +9,6 @@ import pytest
 from atmosbox.engine import HeatBath, Periodic, Specular
 from atmosbox.engine.core.jit import COMPILED
 
-__all__ = ["SMOOTH", "TURNING", "WARM", "Pulse", "apart", "held", "many_events", "random_state"]
-
 SMOOTH, TURNING, WARM = (Specular(),) * 6, (Periodic(),) * 6, (HeatBath(1.0),) * 6
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

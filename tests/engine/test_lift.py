@@ -37,15 +37,10 @@ BOXES = {
 }
 
 
-def pressure_of(name):
-    """Return approximately the pressure of the box at the start."""
-    driver = follow(1.0, 1.0)
-    return driver.pressure(BOXES[name](driver))
-
-
 @pytest.mark.parametrize("name", BOXES)
 def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
-    start = pressure_of(name)
+    driver = follow(1.0, 1.0)
+    start = driver.pressure(BOXES[name](driver))
     box = BOXES[name](follow(start, 0.5 * start))
     interval = box._driver.interval
     fell = 0

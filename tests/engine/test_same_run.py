@@ -98,10 +98,6 @@ class Stop(Exception):
     """What a watch may raise, as Ctrl-C does."""
 
 
-def through_pickle(box):
-    return pickle.loads(pickle.dumps(box))
-
-
 def through_a_file(box, make):
     """Return another box in the state of this one, after the state was converted to text and bytes and back."""
     state = box.state()
@@ -182,7 +178,8 @@ def test_a_copy_does_what_the_original_does(name):
     box = BOXES[name]()
     box.advance(20.0)
     then = bits(box)
-    twins = {"copy": copy.deepcopy(box), "pickle": through_pickle(box), "file": through_a_file(box, BOXES[name])}
+    twins = {"copy": copy.deepcopy(box), "pickle": pickle.loads(pickle.dumps(box))}
+    twins["file"] = through_a_file(box, BOXES[name])
     for how, twin in twins.items():
         assert bits(twin) == then, how
         twin.advance(40.0)

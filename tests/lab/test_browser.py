@@ -265,10 +265,8 @@ def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_aga
     for until, strength in turns:
         shown.ask(type="frames", value=until)
         shown.ask(type="set", name="attraction", value=strength)
-        while frame < until:
-            for sample in range(1, setup.samples + 1):
-                parcel.advance(setup.moment(frame, sample))
-            frame += 1
+        advance(setup, until, frame)
+        frame = until
         parcel.set_strength(strength)
     assert (parcel._walls.epoch[0] > 0.0) == (frames > 134)  # after which all clocks are set back
     assert shown.digest() == state_of(parcel)
