@@ -54,10 +54,6 @@ def hand_made(monkeypatch):
     monkeypatch.setattr(accuracy, "load", lambda: TABLES)
 
 
-def command(*words):
-    return typed(*words, COLUMNS=None)
-
-
 # What is asked for
 
 
@@ -118,10 +114,10 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
     file = tmp_path / "warm.nc"
     fast = ("--set", "molecules=20", "--set", "duration=2ns")
     words = ("run", "temperature", "--accuracy", target, *fast, "--out", str(file))
-    planned = command(*words, "--dry-run")
+    planned = typed(*words, "--dry-run")
     assert f"accuracy {target} (" in planned.stdout
     assert not file.exists()
-    result = command(*words, "--json")
+    result = typed(*words, "--json")
     assert result.exit_code == 0, result.output
     made = json.loads(result.stdout)
     picked = choose("temperature", target)
@@ -141,9 +137,9 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
 def test_an_accuracy_may_stand_in_a_settings_file_and_in_python(tmp_path, hand_made):
     file = tmp_path / "warm.toml"
     file.write_text('scene = "temperature"\naccuracy = "sketch"\n[settings]\nmolecules = 20\n', encoding="utf-8")
-    planned = json.loads(command("run", "--config", str(file), "--dry-run", "--json").stdout)
+    planned = json.loads(typed("run", "--config", str(file), "--dry-run", "--json").stdout)
     assert (planned["engine"], planned["accuracy"]["wish"]) == ("stepped:applet,delta=0.01", "sketch")
-    over = json.loads(command("run", "--config", str(file), "--accuracy", "0.1K", "--dry-run", "--json").stdout)
+    over = json.loads(typed("run", "--config", str(file), "--accuracy", "0.1K", "--dry-run", "--json").stdout)
     assert (over["engine"], over["accuracy"]["wish"]) == ("exact", "0.1K")
     dataset = atmosbox.run("temperature", accuracy="lecture", molecules=20, duration="1 ns")
     assert provenance.parameters(dataset)["accuracy"]["wish"] == "lecture"

@@ -21,7 +21,7 @@ from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import restart, runner
 from tests.few_frames import FRAMES, cut, few_frames_of
-from tests.in_process import typed
+from tests.in_process import refused, typed
 
 RUNS = {  # scene, molecules and length of a small box, and of one that takes seconds, so that it can be killed; engine
     "discs": ("elastic-collisions", {"duration": ("5 s", "7500 s")}, (60, 400), None),
@@ -211,14 +211,6 @@ def part(tmp_path):
     return checkpoint.part
 
 
-def refused(*words):
-    result = typed(*words)
-    assert result.exit_code == 2, result.output
-    assert result.stderr.startswith("error: ")
-    assert result.stderr.count("\n") == 1
-    return result.stderr
-
-
 def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
     for changed, said in [
         ({"version": "0.0.9"}, "version (0.0.9, now"),
@@ -237,7 +229,7 @@ def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
 
 def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
     atmosbox.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
-    assert "done.nc is finished: type atmosbox run --from" in refused("run", "--resume", tmp_path / "done.nc")
+    assert "done.nc is finished: type atmosbox run --from" in refused(typed("run", "--resume", tmp_path / "done.nc"))
     with netCDF4.Dataset(part) as file:
         whole = np.asarray(file.variables["atmosbox_state"][:])
         attributes = {name: file.getncattr(name) for name in file.ncattrs() if name != "atmosbox_headlines"}
@@ -254,10 +246,10 @@ def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
             file.setncatts(attributes)
             file.createDimension("byte", len(bytes_))
             file.createVariable("atmosbox_state", "u1", ("byte",))[:] = bytes_
-        assert "damaged" in refused("run", "--resume", odd), name
+        assert "damaged" in refused(typed("run", "--resume", odd)), name
     with netCDF4.Dataset(part, "r+") as file:
         file.delncattr("history")
-    assert "damaged" in refused("run", "--resume", part)
+    assert "damaged" in refused(typed("run", "--resume", part))
 
 
 def test_the_state_of_a_scene_of_ones_own_needs_its_path_typed(tmp_path, monkeypatch):
@@ -267,7 +259,7 @@ def test_the_state_of_a_scene_of_ones_own_needs_its_path_typed(tmp_path, monkeyp
     prepared = runner.prepare("./mine.py", {"duration": "5 s"})
     with pytest.raises(runner.Interrupted):
         runner.execute(prepared, checkpoint=Checkpoint("x.nc"), progress=stopping([0.5]))
-    assert "atmosbox run ./mine.py --resume x.part.nc" in refused("run", "--resume", "x.part.nc")
+    assert "atmosbox run ./mine.py --resume x.part.nc" in refused(typed("run", "--resume", "x.part.nc"))
     assert typed("run", "./mine.py", "--resume", "x.part.nc").exit_code == 0
 
 
@@ -285,7 +277,7 @@ def test_a_run_whose_instruments_keep_what_no_file_can_hold_says_so_and_saves_it
     with pytest.warns(UserWarning, match=r"instrument 1\.seen"), pytest.raises(runner.Interrupted):
         runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
     assert read(checkpoint.part).sizes["elapsed_time"] > 0
-    assert "holds no state" in refused("run", "--resume", checkpoint.part)
+    assert "holds no state" in refused(typed("run", "--resume", checkpoint.part))
 
 
 @pytest.mark.parametrize(
