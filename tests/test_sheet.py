@@ -61,12 +61,6 @@ def commands_of(text):
     return re.findall(r"^\*\*([A-D])\*\*, .*:\n\n```sh\n(.*)\n```$", text, re.MULTILINE)
 
 
-def table_of(text):
-    """Return the cells of the table of a sheet, row by row without the heading."""
-    rows = [line for line in text.splitlines() if line.startswith("|")]
-    return [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows[2:]]
-
-
 def text_of_pdf(content):
     pages = [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(content)).pages]
     return pages, " ".join(" ".join(pages).replace("\xa0", " ").split())
@@ -174,7 +168,8 @@ def answered():
 
 def test_the_answers_are_numbers_of_the_runs_and_not_written_down(answered):
     light = answered.runs[0].fact("energy_of_light_discs")
-    _, _, letter, value, expected, misfit = table_of(answered.text)[0]
+    _, _, row, *_ = (line for line in answered.text.splitlines() if line.startswith("|"))
+    _, _, letter, value, expected, misfit = (cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1])
     assert (letter, value) == ("A", measured(light.n, light.s))
     assert expected == theoretical(1.0, light.s)
     assert float(misfit.replace("−", "-")) == pytest.approx((light.n - 1.0) / light.s, abs=0.051)

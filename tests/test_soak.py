@@ -9,6 +9,7 @@ import pytest
 
 from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular, Substance
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from tests.engine.boxes import apart
 
 pytestmark = pytest.mark.soak
 
@@ -57,12 +58,8 @@ BOXES = {
 def deepest_overlap(box):
     """Return the deepest overlap of a pair, in diameters; negative if no pair overlaps."""
     x = box.snapshot().position
-    d = x[:, None] - x[None, :]
-    for axis in range(3):
-        if box.periodic[axis]:
-            d[..., axis] -= box.length[axis] * np.round(d[..., axis] / box.length[axis])
-    apart = np.sqrt((d**2).sum(axis=-1))
-    return float(1.0 - apart[~np.eye(len(x), dtype=bool)].min())
+    distance = apart(x, x, box.length, box.periodic)
+    return float(1.0 - distance[~np.eye(len(x), dtype=bool)].min())
 
 
 @pytest.fixture
