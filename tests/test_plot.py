@@ -59,15 +59,6 @@ def finished(scene, title, molecules, panels, variables, coords=None):
     )
 
 
-def headline(name, value, se, theory, units, title, against="theory", **attrs):
-    return {
-        name: variable((), value, units, display_name=title, **attrs),
-        f"{name}_se": variable((), se, units),
-        f"{name}_theory": variable((), theory, units, display_name=against),
-        f"{name}_tolerance": variable((), 4 * se, units),
-    }
-
-
 def small(values, panel=TEMPERATURE, **variables):
     """Return the shortest run that has a figure."""
     values = np.asarray(values, dtype=float)
@@ -193,7 +184,9 @@ def test_gaps_single_frames_and_constants_can_be_drawn(tmp_path, scale):
 
 
 def test_a_headline_is_called_by_its_long_name_and_shown_in_its_units(runs):
-    run = xr.Dataset(headline("h", 8400.0, 31.0, 8430.0, "m", "", long_name="scale height", display_units="km"))
+    stated = {"h_se": 31.0, "h_theory": 8430.0, "h_tolerance": 124.0}
+    run = xr.Dataset({name: variable((), value, "m") for name, value in stated.items()})
+    run["h"] = variable((), 8400.0, "m", long_name="scale height", display_units="km")
     said = [words.replace("\u00a0", " ") for words in caption.headline(run, "h")]
     assert said == ["scale height", "8.40", "± 0.03 km", "theory 8.43 km", "difference −0.03 km"]
 

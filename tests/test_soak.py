@@ -7,14 +7,13 @@ import time
 import numpy as np
 import pytest
 
-from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular, Substance
+from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-from tests.engine.boxes import apart
+from tests.engine.boxes import WATER, apart
 
 pytestmark = pytest.mark.soak
 
 CONTACTS = 1.2e9  # of all exact boxes together
-WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 SMOOTH = (Specular(),) * 5
 
 

@@ -5,10 +5,10 @@ import copy
 import numpy as np
 import pytest
 
-from atmosbox.engine import FollowPressure, Mist, ParcelSet, Piston, Specular, Substance
+from atmosbox.engine import FollowPressure, Mist, ParcelSet, Piston, Specular
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from tests.engine.boxes import WATER
 
-WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 UNDER_PISTON = (*(Specular(),) * 5, Piston())
 TAU = 2.0
 

@@ -23,7 +23,6 @@ from atmosbox.engine import (
     RefusedError,
     Specular,
     SquareWell,
-    Substance,
 )
 from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
@@ -32,12 +31,10 @@ from atmosbox.engine.exact import parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
-from tests.engine.boxes import SMOOTH, WARM
+from tests.engine.boxes import SMOOTH, WARM, WATER
 from tests.engine.test_drop import box as drop_box
 from tests.engine.test_moist import box as moist_box
 from tests.engine.test_parcelset import box as exact_box
-
-WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 
 
 def gas(number=64, side=12.0, seed=5):
