@@ -53,10 +53,11 @@ def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
 # Pages and bars
 
 
-def test_the_page_runs_inside_a_notebook(monkeypatch, small_run, browser, tmp_path):
+def test_the_page_runs_inside_a_notebook(monkeypatch, browser, tmp_path):
     monkeypatch.setattr(drawing, "in_notebook", lambda: True)
     file = tmp_path / "notebook.html"
-    shown = ab.show(small_run("temperature"), height=500)
+    run = ab.run("temperature", molecules=50, duration="20 ns", save_molecules=True)
+    shown = ab.show(run, height=500)
     file.write_text(f"<body>{shown._repr_html_()}</body>", encoding="utf-8")
     tab = browser.new_page(viewport={"width": 1000, "height": 600})
     faults = []
