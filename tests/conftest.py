@@ -243,3 +243,9 @@ def small_run():
         return atmosbox.run(scene, save_molecules=True, **SMALL_RUNS[scene])
 
     return lambda scene: made(scene).copy(deep=True)
+
+
+@pytest.fixture(scope="module")
+def runs(small_run):
+    """All short runs, by scene."""
+    return {scene: small_run(scene) for scene in SMALL_RUNS}

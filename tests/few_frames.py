@@ -1,8 +1,8 @@
 """Cut the runs of a test into fewer frames: with all frames of the scene, the ends of frames take most of the time."""
 
-from atmosbox import scenarios
+import pytest
 
-__all__ = ["FRAMES", "cut"]
+from atmosbox import scenarios
 
 FRAMES = {
     "atmosphere": (80, 14),
@@ -30,3 +30,15 @@ def cut(patch, frames):
         patch.setattr(module, "FRAMES", number)
         if settle is not None:
             patch.setattr(module, "SETTLE", settle)
+
+
+def few_frames_of(frames):
+    """Return a fixture that cuts all runs of a file of tests, see `cut`."""
+
+    @pytest.fixture(scope="module", autouse=True)
+    def few_frames():
+        with pytest.MonkeyPatch.context() as patch:
+            cut(patch, frames)
+            yield
+
+    return few_frames

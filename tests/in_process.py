@@ -6,8 +6,6 @@ from typer import testing
 
 from atmosbox.cli import app
 
-__all__ = ["COMMAND", "typed"]
-
 COMMAND = typer.main.get_command(app)
 
 
@@ -16,3 +14,12 @@ def typed(*words, **environment):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(testing, "_get_command", lambda app: COMMAND)
         return testing.CliRunner().invoke(app, [*map(str, words)], env=environment)
+
+
+def refused(result):
+    """Return the one sentence with which a command was refused."""
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("error: ")
+    return line

@@ -13,8 +13,6 @@ import numpy as np
 
 from atmosbox.simulation.preparation import build, prepare
 
-__all__ = ["CASES", "digest"]
-
 
 class Case(NamedTuple):
     """A scene with a few molecules, the share of its time that it runs, and its engine."""

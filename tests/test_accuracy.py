@@ -8,11 +8,9 @@ import warnings
 import numpy as np
 import pytest
 from scipy import stats
-from typer.testing import CliRunner
 
 import atmosbox
 from atmosbox import scenarios
-from atmosbox.cli import app
 from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
@@ -21,6 +19,7 @@ from atmosbox.scene.headline import AS_STATED, ENGINE_IS_OFF
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Target, choose, parse
 from atmosbox.trade import timed_run
+from tests.in_process import typed
 
 
 def way(engine="exact", cost=1.0, kelvin=0.1, share=0.001, bias=0.0, **settings):
@@ -53,10 +52,6 @@ TABLES = {
 def hand_made(monkeypatch):
     """Replace the table that comes with atmosbox by a hand-made one."""
     monkeypatch.setattr(accuracy, "load", lambda: TABLES)
-
-
-def command(*words):
-    return CliRunner().invoke(app, list(words), env={"COLUMNS": None})
 
 
 # What is asked for
@@ -119,10 +114,10 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
     file = tmp_path / "warm.nc"
     fast = ("--set", "molecules=20", "--set", "duration=2ns")
     words = ("run", "temperature", "--accuracy", target, *fast, "--out", str(file))
-    planned = command(*words, "--dry-run")
+    planned = typed(*words, "--dry-run")
     assert f"accuracy {target} (" in planned.stdout
     assert not file.exists()
-    result = command(*words, "--json")
+    result = typed(*words, "--json")
     assert result.exit_code == 0, result.output
     made = json.loads(result.stdout)
     picked = choose("temperature", target)
@@ -142,9 +137,9 @@ def test_a_run_is_made_as_it_was_picked_and_says_what_it_expected_and_found(tmp_
 def test_an_accuracy_may_stand_in_a_settings_file_and_in_python(tmp_path, hand_made):
     file = tmp_path / "warm.toml"
     file.write_text('scene = "temperature"\naccuracy = "sketch"\n[settings]\nmolecules = 20\n', encoding="utf-8")
-    planned = json.loads(command("run", "--config", str(file), "--dry-run", "--json").stdout)
+    planned = json.loads(typed("run", "--config", str(file), "--dry-run", "--json").stdout)
     assert (planned["engine"], planned["accuracy"]["wish"]) == ("stepped:applet,delta=0.01", "sketch")
-    over = json.loads(command("run", "--config", str(file), "--accuracy", "0.1K", "--dry-run", "--json").stdout)
+    over = json.loads(typed("run", "--config", str(file), "--accuracy", "0.1K", "--dry-run", "--json").stdout)
     assert (over["engine"], over["accuracy"]["wish"]) == ("exact", "0.1K")
     dataset = atmosbox.run("temperature", accuracy="lecture", molecules=20, duration="1 ns")
     assert provenance.parameters(dataset)["accuracy"]["wish"] == "lecture"
@@ -210,13 +205,23 @@ def test_every_target_has_a_pick_in_every_measured_scene():
         assert picked.met == (target == "reference" or picked.way.excess(TARGETS[target]) <= 1.0)
 
 
-def hold(scene, held, members):
-    """Hold a way of running a scene to a fresh measurement with other seeds.
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("scene", "held"),
+    [
+        pytest.param(scene, one, id=f"{scene}, {one.label}")
+        for scene, table in accuracy.load().items()
+        for one in table.ways
+    ],
+)
+def test_every_way_of_the_shipped_table_is_what_a_fresh_measurement_finds(scene, held):
+    """Each is measured again with other seeds.
 
     Both measurements estimate their noise from the scatter of the seeds, so the bias is judged by Student's
     distribution (Welch) and the noise by Fisher's, both at the odds of four standard errors: a table that is right
     is called wrong with a probability of 6e-5 for each bias and each noise.
     """
+    members = 8
     way = timed_run.Way(held.engine, held.settings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
@@ -234,16 +239,3 @@ def hold(scene, held, members):
         freedoms = members - 1, held.members - 1
         low, high = stats.f.ppf(tail, *freedoms), stats.f.isf(tail, *freedoms)
         assert low <= (noise / known.noise) ** 2 <= high, (held.label, name, noise, known)
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize(
-    ("scene", "held"),
-    [
-        pytest.param(scene, one, id=f"{scene}, {one.label}")
-        for scene, table in accuracy.load().items()
-        for one in table.ways
-    ],
-)
-def test_every_way_of_the_shipped_table_is_what_a_fresh_measurement_finds(scene, held):
-    hold(scene, held, members=8)

@@ -6,10 +6,8 @@ import matplotlib
 import numpy as np
 import pytest
 from PIL import Image
-from typer.testing import CliRunner
 
 from atmosbox import film
-from atmosbox.cli import app
 from atmosbox.errors import FileError
 from atmosbox.file import netcdf as output
 from atmosbox.file.molecules import molecules
@@ -18,20 +16,11 @@ from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.graph import Running
 from atmosbox.plot.box_picture import project
 from atmosbox.plot.theme import FIELD_COLOURS, find, style
-from tests.conftest import SMALL_RUNS
+from tests.in_process import typed
 
 LOOK = sized(find("notes"), "gif")
 
 needs_ffmpeg = pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs atmosbox[movie]")
-
-
-@pytest.fixture(scope="module")
-def runs(small_run):
-    return {scene: small_run(scene) for scene in SMALL_RUNS}
-
-
-def command(*words):
-    return CliRunner().invoke(app, ["animate", *map(str, words)], env={"COLUMNS": None})
 
 
 def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs):
@@ -103,18 +92,18 @@ def test_an_mp4_is_what_presentations_play(runs, tmp_path):
 
 def test_the_command_films_beside_the_file_and_prints_the_path_and_the_same_run_gives_the_same_gif(runs, tmp_path):
     path = output.write(runs["temperature"], tmp_path / "run.nc")
-    result = command(path, "--seconds", "0.2", "--quiet")
+    result = typed("animate", path, "--seconds", "0.2", "--quiet")
     assert result.exit_code == 0, result.output
     assert result.stdout.strip() == str(tmp_path / "run.gif")
     made = (tmp_path / "run.gif").read_bytes()
     assert made[:6] == b"GIF89a"
-    assert command(path, "--seconds", "0.2", "--force").exit_code == 0
+    assert typed("animate", path, "--seconds", "0.2", "--force").exit_code == 0
     assert (tmp_path / "run.gif").read_bytes() == made
 
 
 def test_a_run_without_molecules_or_frames_is_refused(runs, tmp_path):
     bare = output.write(runs["lifting-dry"].drop_vars(["molecule_position", "molecule_speed"]), tmp_path / "bare.nc")
-    refused = command(bare)
+    refused = typed("animate", bare)
     assert (refused.exit_code, refused.stdout) == (2, "")
     assert "--save-molecules" in refused.stderr
     assert "--graphs" in refused.stderr

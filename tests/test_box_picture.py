@@ -1,19 +1,12 @@
 """The box of a run with its molecules, alone and over the panels of its scene."""
 
 import numpy as np
-import pytest
 from matplotlib.figure import Figure
 
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.plot import figure_with_box
 from atmosbox.plot.box_picture import BoxPicture
 from atmosbox.plot.theme import find
-from tests.conftest import SMALL_RUNS
-
-
-@pytest.fixture(scope="module")
-def runs(small_run):
-    return {scene: small_run(scene) for scene in SMALL_RUNS}
 
 
 def picture(held):

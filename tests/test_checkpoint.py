@@ -37,13 +37,6 @@ from atmosbox.file.provenance import global_attributes
 """
 
 
-def child(code, *arguments, **options):
-    """Start a Python that runs this code after the definitions of CHILD."""
-    command = [sys.executable, "-W", "error", "-c", CHILD + code, *map(str, arguments)]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, **options)
-
-
 def frames_in(path):
     return read(path).sizes["elapsed_time"]
 
@@ -96,7 +89,10 @@ print("begun", flush=True)
 sys.stdin.read()
 checkpoint.release()
 """
-    with child(code, path, stdin=subprocess.PIPE) as process:
+    command = [sys.executable, "-W", "error", "-c", CHILD + code, str(path)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen(command, text=True, env=environment, **pipes) as process:
         assert process.stdout.readline() == "begun\n"
         with pytest.raises(FileError, match=rf"run\.nc is being written by process {process.pid} on "):
             Checkpoint(path).begin()

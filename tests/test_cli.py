@@ -28,8 +28,8 @@ from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Discs
 from atmosbox.simulation import runner
 from atmosbox.text import progress, report, table
-from tests.few_frames import cut
-from tests.in_process import typed
+from tests.few_frames import few_frames_of
+from tests.in_process import refused, typed
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ("list", "info", "run", "plot", "check")
@@ -45,18 +45,8 @@ def atmosbox_in_process(*words, **environment):
     return typed(*words, **{"COLUMNS": None, **environment})
 
 
-def command_line(*words, **options):
-    """Return the arguments of `subprocess.run` for a command in a separate process."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **options.pop("env", {})}
-    return {"args": [sys.executable, "-m", "atmosbox", *words], "env": environment, "text": True, **options}
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_frames():
-    """The runs of the scene in this process have a twentieth of its frames, the ends of which take most of the time."""
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, {SCENE: (60, 20)})
-        yield
+few_frames = few_frames_of({SCENE: (60, 20)})
+"""The runs of the scene in this process have a twentieth of its frames, the ends of which take most of the time."""
 
 
 @pytest.fixture(scope="module")
@@ -78,20 +68,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def no_computing(monkeypatch):
     """Fail if anything is computed."""
-
-    def execute(*args, **kwargs):
-        raise AssertionError("a run was begun")
-
-    monkeypatch.setattr(runner, "execute", execute)
-
-
-def refused(result, status=2):
-    """Return the one sentence with which a command was refused."""
-    assert result.exit_code == status, result.output
-    assert result.stdout == ""
-    (line,) = result.stderr.splitlines()
-    assert line.startswith("error: ")
-    return line
+    monkeypatch.setattr(runner, "execute", lambda *args, **kwargs: pytest.fail("a run was begun"))
 
 
 def planned(*words):
@@ -127,9 +104,8 @@ def test_what_must_be_there_at_once_waits_for_nothing_heavy(folder):
         "        app(words, standalone_mode=False)\n"
         "print(*sys.modules)"
     )
-    command = command_line(capture_output=True)
-    command["args"] = [sys.executable, "-c", code]
-    loaded = subprocess.run(**command, check=True).stdout.splitlines()[-1].split()
+    options = {"env": {**os.environ, "PYTHONPATH": str(ROOT)}, "capture_output": True, "text": True}
+    loaded = subprocess.run([sys.executable, "-c", code], check=True, **options).stdout.splitlines()[-1].split()
     assert "numpy" in loaded
     assert set(HEAVY).isdisjoint(loaded)
 

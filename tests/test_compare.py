@@ -5,13 +5,12 @@ import math
 
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox.cli import app
 from atmosbox.file import netcdf as output
 from atmosbox.plot import compare as comparison
 from atmosbox.plot.compare import compared, naming
+from tests.in_process import typed
 
 SMALL = {"molecules": 100, "ascent": 20.0}
 
@@ -37,7 +36,7 @@ def files(tmp_path_factory):
 
 def command(folder, *words):
     words = [str(folder / word) if word.endswith(".nc") else word for word in words]
-    return CliRunner().invoke(app, ["compare", *words], env={"COLUMNS": None})
+    return typed("compare", *words, COLUMNS=None)
 
 
 def read(folder, *names):

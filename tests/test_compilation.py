@@ -4,14 +4,13 @@ import json
 import uuid
 
 import pytest
-from typer.testing import CliRunner
 
-from atmosbox.cli import app
 from atmosbox.engine.core.jit import COMPILED, kernel
 from atmosbox.engine.core.kernel_cache import compilations
 from atmosbox.simulation import compilation
 from atmosbox.simulation.preparation import prepare
 from atmosbox.simulation.runner import execute
+from tests.in_process import typed
 
 SCENE = "elastic-collisions"
 
@@ -41,7 +40,7 @@ def test_a_kernel_that_is_compiled_is_announced_and_one_that_is_found_is_not():
 
 def test_prepare_tells_where_the_machine_code_is():
     execute(prepare(SCENE, {"duration": "2 s"}))
-    result = CliRunner().invoke(app, ["prepare", SCENE, "--json"])
+    result = typed("prepare", SCENE, "--json")
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
     assert told["folder"] == str(compilation.cache_home())

@@ -6,14 +6,6 @@ from hypothesis import strategies as st
 
 from atmosbox.cli.request import Asked, load_config
 from atmosbox.errors import ConfigError, FileError
-from atmosbox.scene.settings import SceneSettings, setting
-
-
-class Settings(SceneSettings):
-    molecules: int = setting(4000, "1", "number of simulated molecules", low=1, high=10_000_000)
-    temperature: float = setting(15.0, "degC", "temperature at the start", low=-100.0, high=500.0)
-    pressure_top: float = setting(300.0, "hPa", "pressure at which the lift ends", low=50.0, high=1000.0)
-    rotation: bool = setting(True, "", "whether molecules rotate")
 
 
 def written(tmp_path, content):
@@ -30,7 +22,6 @@ def test_a_settings_file_names_a_scene_and_its_settings(tmp_path):
     )
     settings = {"temperature": "25degC", "molecules": 4000, "pressure-top": 300.0, "rotation": False}
     assert load_config(path) == load_config(str(path)) == Asked("lifting-dry", settings)
-    assert Settings.from_user(settings).changed() == {"temperature": 25.0, "rotation": False}
 
 
 def test_a_settings_file_may_leave_things_out(tmp_path):
@@ -61,7 +52,6 @@ def test_a_settings_file_that_says_something_else_is_refused(tmp_path):
         ("[[settings]]", " has settings that is not a table", "write a line [settings]"),
         ("[settings]\n\na = [1]", " has a that is not a number", "give one number"),
         ("[settings]\n'a b' = {c = 1}", " has a b that is not a number", "give one number"),
-        ("[settings.a]\nb = 1", " has a that is not a number", "give one number"),
     ]
     for content, problem, fix in cases:
         with pytest.raises(ConfigError) as caught:

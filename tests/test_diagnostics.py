@@ -1,34 +1,18 @@
 """The dataset that is made from the numbers of a run."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from atmosbox.errors import EngineError
 from atmosbox.file.dataset import dataset, headline_variables
+from atmosbox.scene.headline import Headline
 
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 
 
-def headline(name="lapse_rate", value=9.7e-3, **fields):
+def headline():
     """Return a headline as a scene states it."""
-    stated = {
-        "standard_error": 1e-4,
-        "theory": 9.8e-3,
-        "tolerance": 4e-4,
-        "unit": "K m-1",
-        "display_unit": "K km-1",
-        "reason": "a finite rise",
-        "chance": 4e-4,
-        "known": 4e-4,
-        "verdict": None,
-        "low": None,
-        "high": None,
-        "resolved": True,
-        "program": "",
-    }
-    return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
+    return Headline("lapse_rate", 9.7e-3, 1e-4, 9.8e-3, 4e-4, "a finite rise", "K m-1", "K km-1", "lapse rate")
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])

@@ -17,11 +17,6 @@ PAGES = [ROOT / "README.md", *sorted(DOCS.glob("**/*.md"))]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", "MPLBACKEND": "agg"}
 
 
-def script(*words):
-    command = [sys.executable, str(DOCS / "figures.py"), *words]
-    return subprocess.run(command, capture_output=True, encoding="utf-8", env=ENVIRONMENT, check=False)
-
-
 def heading_anchor(heading):
     """Return the anchor that the host of a page makes from a heading."""
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
@@ -64,7 +59,8 @@ def test_every_scene_has_a_page_that_the_index_names_and_a_variant_that_of_its_b
 
 
 def test_cheap_tables_are_fresh_and_pages_and_jobs_know_each_other():
-    done = script("--quick", "--check")
+    command = [sys.executable, str(DOCS / "figures.py"), "--quick", "--check"]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", env=ENVIRONMENT, check=False)
     assert done.returncode == 0, done.stderr
 
 

@@ -8,17 +8,13 @@ import pytest
 import atmosbox as ab
 from atmosbox.errors import FileError
 from atmosbox.file.export import extended_xyz
-from tests.few_frames import cut
+from tests.few_frames import few_frames_of
 
 DALTON = 1.66053906892e-27
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_frames():
-    """Runs have few frames: each is read as the others are."""
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, {"temperature": (60, 10), "condensation": (40, 10)})
-        yield
+few_frames = few_frames_of({"temperature": (60, 10), "condensation": (40, 10)})
+"""Runs have few frames: each is read as the others are."""
 
 
 @pytest.fixture(scope="module")

@@ -10,28 +10,19 @@ import xarray as xr
 import atmosbox as ab
 from atmosbox import errors
 from atmosbox.interface import drawing
-from tests.few_frames import cut
+from tests.few_frames import few_frames_of
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENE = "elastic-collisions"
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_frames():
-    """Runs have few frames: their ends took most of the time."""
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, {SCENE: (60, 20), "temperature": (60, 10)})
-        yield
+few_frames = few_frames_of({SCENE: (60, 20), "temperature": (60, 10)})
+"""Runs have few frames: their ends took most of the time."""
 
 
 @pytest.fixture(scope="module")
 def lifted():
     return ab.run("lifting-dry", molecules=200)
-
-
-@pytest.fixture(scope="module")
-def boxed():
-    return ab.run("temperature", molecules=50, duration="20 ns", save_molecules=True)
 
 
 # A run and its numbers
@@ -62,10 +53,12 @@ def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
 # Pages and bars
 
 
-def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
+def test_the_page_runs_inside_a_notebook(monkeypatch, browser, tmp_path):
     monkeypatch.setattr(drawing, "in_notebook", lambda: True)
     file = tmp_path / "notebook.html"
-    file.write_text(f"<body>{ab.show(boxed, height=500)._repr_html_()}</body>", encoding="utf-8")
+    run = ab.run("temperature", molecules=50, duration="20 ns", save_molecules=True)
+    shown = ab.show(run, height=500)
+    file.write_text(f"<body>{shown._repr_html_()}</body>", encoding="utf-8")
     tab = browser.new_page(viewport={"width": 1000, "height": 600})
     faults = []
     tab.on("pageerror", lambda fault: faults.append(fault))

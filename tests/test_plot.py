@@ -25,7 +25,6 @@ from atmosbox.plot.curve import curve
 from atmosbox.plot.run_figure import panels_of
 from atmosbox.scene.panels import Line, Panel, to_json
 from atmosbox.simulation.recording import Recording
-from tests.conftest import SMALL_RUNS
 from tests.in_process import typed
 
 TIME = Line("elapsed_time", "air_temperature", "thermometer", error="air_temperature_se")
@@ -60,15 +59,6 @@ def finished(scene, title, molecules, panels, variables, coords=None):
     )
 
 
-def headline(name, value, se, theory, units, title, against="theory", **attrs):
-    return {
-        name: variable((), value, units, display_name=title, **attrs),
-        f"{name}_se": variable((), se, units),
-        f"{name}_theory": variable((), theory, units, display_name=against),
-        f"{name}_tolerance": variable((), 4 * se, units),
-    }
-
-
 def small(values, panel=TEMPERATURE, **variables):
     """Return the shortest run that has a figure."""
     values = np.asarray(values, dtype=float)
@@ -87,11 +77,6 @@ def tick_texts(axis):
     drawn = [tick for tick in axis.get_major_ticks() if low - room <= tick.get_loc() <= high + room]
     labels = [label for tick in drawn for label in (tick.label1, tick.label2) if label.get_visible()]
     return [label for label in labels if label.get_text()]
-
-
-@pytest.fixture(scope="module")
-def runs(small_run):
-    return {scene: small_run(scene) for scene in SMALL_RUNS}
 
 
 @pytest.fixture(scope="module")
@@ -199,7 +184,9 @@ def test_gaps_single_frames_and_constants_can_be_drawn(tmp_path, scale):
 
 
 def test_a_headline_is_called_by_its_long_name_and_shown_in_its_units(runs):
-    run = xr.Dataset(headline("h", 8400.0, 31.0, 8430.0, "m", "", long_name="scale height", display_units="km"))
+    stated = {"h_se": 31.0, "h_theory": 8430.0, "h_tolerance": 124.0}
+    run = xr.Dataset({name: variable((), value, "m") for name, value in stated.items()})
+    run["h"] = variable((), 8400.0, "m", long_name="scale height", display_units="km")
     said = [words.replace("\u00a0", " ") for words in caption.headline(run, "h")]
     assert said == ["scale height", "8.40", "± 0.03 km", "theory 8.43 km", "difference −0.03 km"]
 
@@ -254,12 +241,8 @@ def test_each_format_is_what_it_says_and_carries_the_settings_of_its_run(tmp_pat
     assert b"CreationDate" not in pdf.read_bytes()
 
 
-def broken(**changes):
-    run = small([280.0, 290.0])
-    return run.assign_attrs(changes)
-
-
 def test_a_file_that_cannot_be_drawn_is_refused_in_a_sentence():
+    broken = small([280.0, 290.0]).assign_attrs
     cases = [
         (xr.Dataset(), "atmosbox did not write it"),
         (broken(atmosbox_panels="[]"), "not in the form that atmosbox writes"),

@@ -20,8 +20,8 @@ from atmosbox.errors import FileError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import restart, runner
-from tests.few_frames import FRAMES, cut
-from tests.in_process import typed
+from tests.few_frames import FRAMES, cut, few_frames_of
+from tests.in_process import refused, typed
 
 RUNS = {  # scene, molecules and length of a small box, and of one that takes seconds, so that it can be killed; engine
     "discs": ("elastic-collisions", {"duration": ("5 s", "7500 s")}, (60, 400), None),
@@ -65,18 +65,15 @@ def content(path):
     return held
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_frames():
-    """The runs in this process have few frames, but for those that are compared with runs in another one."""
-    with pytest.MonkeyPatch.context() as patch:
-        fewer = {scene: frames for scene, frames in FRAMES.items() if scene != "temperature"}
-        cut(patch, fewer | {"elastic-collisions": (60, 20), "mountains": (24, None)})
-        yield
+FEWER = {scene: frames for scene, frames in FRAMES.items() if scene != "temperature"}
+few_frames = few_frames_of(FEWER | {"elastic-collisions": (60, 20), "mountains": (24, None)})
+"""The runs in this process have few frames, but for those that are compared with runs in another one."""
 
 
 @pytest.fixture(autouse=True)
 def same_date(monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
 
 
 def stopping(shares):
@@ -205,22 +202,13 @@ def test_fifty_kills_of_the_command_change_nothing(tmp_path, request):
 
 
 @pytest.fixture
-def part(tmp_path, monkeypatch):
+def part(tmp_path):
     """The part of a run of discs that was stopped half-way."""
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
     prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
     checkpoint = Checkpoint(tmp_path / "x.nc")
     with pytest.raises(runner.Interrupted):
         runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
     return checkpoint.part
-
-
-def refused(*words):
-    result = typed(*words)
-    assert result.exit_code == 2, result.output
-    assert result.stderr.startswith("error: ")
-    assert result.stderr.count("\n") == 1
-    return result.stderr
 
 
 def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
@@ -241,7 +229,7 @@ def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
 
 def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
     atmosbox.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
-    assert "done.nc is finished: type atmosbox run --from" in refused("run", "--resume", tmp_path / "done.nc")
+    assert "done.nc is finished: type atmosbox run --from" in refused(typed("run", "--resume", tmp_path / "done.nc"))
     with netCDF4.Dataset(part) as file:
         whole = np.asarray(file.variables["atmosbox_state"][:])
         attributes = {name: file.getncattr(name) for name in file.ncattrs() if name != "atmosbox_headlines"}
@@ -258,21 +246,20 @@ def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
             file.setncatts(attributes)
             file.createDimension("byte", len(bytes_))
             file.createVariable("atmosbox_state", "u1", ("byte",))[:] = bytes_
-        assert "damaged" in refused("run", "--resume", odd), name
+        assert "damaged" in refused(typed("run", "--resume", odd)), name
     with netCDF4.Dataset(part, "r+") as file:
         file.delncattr("history")
-    assert "damaged" in refused("run", "--resume", part)
+    assert "damaged" in refused(typed("run", "--resume", part))
 
 
 def test_the_state_of_a_scene_of_ones_own_needs_its_path_typed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
     source = Path(scenarios.load("elastic-collisions").__file__).read_text(encoding="utf-8")
     Path("mine.py").write_text(source, encoding="utf-8")
     prepared = runner.prepare("./mine.py", {"duration": "5 s"})
     with pytest.raises(runner.Interrupted):
         runner.execute(prepared, checkpoint=Checkpoint("x.nc"), progress=stopping([0.5]))
-    assert "atmosbox run ./mine.py --resume x.part.nc" in refused("run", "--resume", "x.part.nc")
+    assert "atmosbox run ./mine.py --resume x.part.nc" in refused(typed("run", "--resume", "x.part.nc"))
     assert typed("run", "./mine.py", "--resume", "x.part.nc").exit_code == 0
 
 
@@ -286,12 +273,11 @@ def test_a_run_whose_instruments_keep_what_no_file_can_hold_says_so_and_saves_it
         return setup
 
     monkeypatch.setattr(runner, "build", odd)
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
     checkpoint = Checkpoint(tmp_path / "x.nc")
     with pytest.warns(UserWarning, match=r"instrument 1\.seen"), pytest.raises(runner.Interrupted):
         runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
     assert read(checkpoint.part).sizes["elapsed_time"] > 0
-    assert "holds no state" in refused("run", "--resume", checkpoint.part)
+    assert "holds no state" in refused(typed("run", "--resume", checkpoint.part))
 
 
 @pytest.mark.parametrize(
@@ -304,8 +290,7 @@ def test_a_run_whose_instruments_keep_what_no_file_can_hold_says_so_and_saves_it
         ),
     ],
 )
-def test_a_replayed_run_that_was_stopped_turns_the_other_knobs_when_it_goes_on(turns, tmp_path, monkeypatch):
-    monkeypatch.setattr(runner, "_BREATH", 0.0)
+def test_a_replayed_run_that_was_stopped_turns_the_other_knobs_when_it_goes_on(turns, tmp_path):
     prepared = runner.replayed(f"#atmosbox={__version__}&{turns}&frames=100&end")
     runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "whole.nc"), command="a test")
     checkpoint = Checkpoint(tmp_path / "stopped.nc", every_seconds=0.0)

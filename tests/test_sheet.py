@@ -11,11 +11,9 @@ from pathlib import Path
 import numpy as np
 import pypdf
 import pytest
-from typer.testing import CliRunner
 
 from atmosbox import scenarios, theory
 from atmosbox import sheet as sheets
-from atmosbox.cli import app
 from atmosbox.errors import ConfigError, FileError, SettingError, on_command_line
 from atmosbox.page.document import phrase, words
 from atmosbox.sheet.pdf import PAPERS, pdf
@@ -23,7 +21,8 @@ from atmosbox.sheet.sheet_run import Trial, execute
 from atmosbox.sheet.sums import Measured, filled, measured, theoretical
 from atmosbox.sheet.text import LANGUAGES, SECTIONS, read, text_of, translated
 from atmosbox.simulation import runner
-from tests.few_frames import FRAMES, cut
+from tests.few_frames import FRAMES, few_frames_of
+from tests.in_process import typed
 from tests.oracle import moist_adiabat
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -48,11 +47,7 @@ SMALL = {
 """Runs that take a second, and report what the scene does."""
 
 
-@pytest.fixture(scope="module", autouse=True)
-def short():
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, FRAMES)
-        yield
+few_frames = few_frames_of(FRAMES)
 
 
 @functools.cache
@@ -61,20 +56,9 @@ def blank(name):
     return sheets.worksheet(name)
 
 
-def answers_of(text):
-    """Return the answers of a sheet."""
-    return re.findall(r"^> (.+)$", text, re.MULTILINE)
-
-
 def commands_of(text):
     """Return letter and command of each run of a sheet."""
     return re.findall(r"^\*\*([A-D])\*\*, .*:\n\n```sh\n(.*)\n```$", text, re.MULTILINE)
-
-
-def table_of(text):
-    """Return the cells of the table of a sheet, row by row without the heading."""
-    rows = [line for line in text.splitlines() if line.startswith("|")]
-    return [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows[2:]]
 
 
 def text_of_pdf(content):
@@ -184,11 +168,12 @@ def answered():
 
 def test_the_answers_are_numbers_of_the_runs_and_not_written_down(answered):
     light = answered.runs[0].fact("energy_of_light_discs")
-    _, _, letter, value, expected, misfit = table_of(answered.text)[0]
+    _, _, row, *_ = (line for line in answered.text.splitlines() if line.startswith("|"))
+    _, _, letter, value, expected, misfit = (cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1])
     assert (letter, value) == ("A", measured(light.n, light.s))
     assert expected == theoretical(1.0, light.s)
     assert float(misfit.replace("−", "-")) == pytest.approx((light.n - 1.0) / light.s, abs=0.051)
-    assert any(value in text for text in answers_of(answered.text))
+    assert any(value in text for text in re.findall(r"^> (.+)$", answered.text, re.MULTILINE))
     assert "____" not in answered.text
 
 
@@ -321,16 +306,16 @@ def test_pages_are_written_beside_their_sheet_or_nothing_is(tmp_path):
     out = tmp_path / "sheet.md"
     asked = ["sheet", "elastic-collisions", "--lab", "--set", "molecules=20", "--out", str(out)]
     (tmp_path / "elastic-collisions-B.html").touch()
-    assert CliRunner().invoke(app, asked).exit_code != 0
+    assert typed(*asked).exit_code != 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["elastic-collisions-B.html"]
-    told = CliRunner().invoke(app, [*asked, "--force"])
+    told = typed(*asked, "--force")
     assert told.exit_code == 0, told.output
     pages = [tmp_path / f"elastic-collisions-{letter}.html" for letter in "ABC"]
     assert told.stdout.split() == [str(path) for path in (out, *pages)]
     stored = re.search(r'id="stored"[^>]*>([^<]+)<', pages[1].read_text(encoding="utf-8"))[1]
     assert b"mass_ratio=1000.0 --seed 1" in gzip.decompress(base64.b64decode(stored))
     # a second sheet uses the same pages
-    again = CliRunner().invoke(app, [*asked[:-1], str(tmp_path / "again.md")])
+    again = typed(*asked[:-1], str(tmp_path / "again.md"))
     assert again.exit_code == 0, again.output
 
 
@@ -404,7 +389,7 @@ def test_a_sheet_in_a_language_that_its_scene_has_not_is_refused_with_one_senten
         with pytest.raises(ConfigError, match=re.escape(f"{path}: {said}")):
             sheets.worksheet(own, language="de")
     path.write_text("goal = 'c'\n[[notice]]\nask = 'd'", encoding="utf-8")
-    told = CliRunner().invoke(app, ["sheet", str(own), "--language", "de", "--out", str(tmp_path / "sheet.md")])
+    told = typed("sheet", str(own), "--language", "de", "--out", str(tmp_path / "sheet.md"))
     assert told.exit_code == 0, told.output
     text = (tmp_path / "sheet.md").read_text(encoding="utf-8")
     assert text.count("____\n") == 4

@@ -7,13 +7,13 @@ import time
 import numpy as np
 import pytest
 
-from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular, Substance
+from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from tests.engine.boxes import WATER, apart
 
 pytestmark = pytest.mark.soak
 
 CONTACTS = 1.2e9  # of all exact boxes together
-WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 SMOOTH = (Specular(),) * 5
 
 
@@ -57,12 +57,8 @@ BOXES = {
 def deepest_overlap(box):
     """Return the deepest overlap of a pair, in diameters; negative if no pair overlaps."""
     x = box.snapshot().position
-    d = x[:, None] - x[None, :]
-    for axis in range(3):
-        if box.periodic[axis]:
-            d[..., axis] -= box.length[axis] * np.round(d[..., axis] / box.length[axis])
-    apart = np.sqrt((d**2).sum(axis=-1))
-    return float(1.0 - apart[~np.eye(len(x), dtype=bool)].min())
+    distance = apart(x, x, box.length, box.periodic)
+    return float(1.0 - distance[~np.eye(len(x), dtype=bool)].min())
 
 
 @pytest.fixture

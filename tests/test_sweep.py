@@ -22,7 +22,7 @@ from atmosbox.simulation import runner
 from atmosbox.sweep import member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.result import mean_and_error
 from tests import in_process
-from tests.few_frames import cut
+from tests.few_frames import few_frames_of
 
 ROOT = Path(__file__).resolve().parents[1]
 CHECKER = shutil.which(check.CHECKER, path=Path(sys.executable).parent)
@@ -76,12 +76,8 @@ def build(settings, engine=EXACT):
 QUICK = {"duration": 2.0}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_frames():
-    """The runs of discs have the few frames that they have in `SCENE`."""
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, {"elastic-collisions": (60, 20)})
-        yield
+few_frames = few_frames_of({"elastic-collisions": (60, 20)})
+"""The runs of discs have the few frames that they have in `SCENE`."""
 
 
 @pytest.fixture

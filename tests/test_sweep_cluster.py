@@ -9,7 +9,7 @@ import pytest
 from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read
 from atmosbox.sweep import conduct, plan, sweep
-from tests.few_frames import cut
+from tests.few_frames import few_frames_of
 from tests.test_sweep import SCENE
 
 distributed = pytest.importorskip("distributed")
@@ -17,12 +17,8 @@ distributed = pytest.importorskip("distributed")
 UNUSED = "tcp://127.0.0.1:1"
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_frames():
-    """The runs of discs in this process have the few frames that they have in `SCENE`."""
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, {"elastic-collisions": (60, 20)})
-        yield
+few_frames = few_frames_of({"elastic-collisions": (60, 20)})
+"""The runs of discs in this process have the few frames that they have in `SCENE`."""
 
 
 @pytest.fixture(scope="module")

@@ -11,12 +11,8 @@ def test_the_constants_are_those_of_the_si():
     assert pytest.approx(8.31446261815324, rel=1e-15) == GAS_CONSTANT
 
 
-def air(weight=1.0):
-    return Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 288.15, weight)
-
-
 def test_the_units_of_a_scale_fit_together():
-    scale = air(weight=1e20)
+    scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 288.15, 1e20)
     assert scale.velocity * scale.time == pytest.approx(scale.length, rel=1e-14)
     assert scale.acceleration * scale.time == pytest.approx(scale.velocity, rel=1e-14)
     assert scale.mass * scale.velocity**2 == pytest.approx(scale.energy, rel=1e-14)

@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, Periodic, Specular
+from atmosbox.engine import HeatBath, Periodic, Specular, Substance
 from atmosbox.engine.core.jit import COMPILED
 
-__all__ = ["SMOOTH", "TURNING", "WARM", "Pulse", "apart", "held", "many_events", "random_state"]
-
 SMOOTH, TURNING, WARM = (Specular(),) * 6, (Periodic(),) * 6, (HeatBath(1.0),) * 6
+WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 
 

@@ -8,7 +8,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from atmosbox.engine import Drops, Periodic, Substance
-from atmosbox.engine.exact import parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 from tests.engine.boxes import SMOOTH, TURNING, WARM, apart, many_events
@@ -138,12 +137,6 @@ def is_lawful(parcel, waters, drops):
 
 
 # ------------------------------------------------------------------ their balances, event by event
-
-
-@pytest.fixture
-def by_single_events(monkeypatch):
-    """Make a box return after every event."""
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
 
 
 @many_events

@@ -5,10 +5,10 @@ import copy
 import numpy as np
 import pytest
 
-from atmosbox.engine import FollowPressure, Mist, ParcelSet, Piston, Specular, Substance
+from atmosbox.engine import FollowPressure, Mist, ParcelSet, Piston, Specular
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from tests.engine.boxes import WATER
 
-WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 UNDER_PISTON = (*(Specular(),) * 5, Piston())
 TAU = 2.0
 
@@ -37,15 +37,10 @@ BOXES = {
 }
 
 
-def pressure_of(name):
-    """Return approximately the pressure of the box at the start."""
-    driver = follow(1.0, 1.0)
-    return driver.pressure(BOXES[name](driver))
-
-
 @pytest.mark.parametrize("name", BOXES)
 def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
-    start = pressure_of(name)
+    driver = follow(1.0, 1.0)
+    start = driver.pressure(BOXES[name](driver))
     box = BOXES[name](follow(start, 0.5 * start))
     interval = box._driver.interval
     fell = 0

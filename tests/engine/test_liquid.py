@@ -55,10 +55,6 @@ def microcanonical(energy, number, nuclei, phi=PHI, sticking=1.0):
     )
 
 
-def hertz_knudsen(kT, substance=WATER):
-    return AREA * substance.saturation_pressure(kT) / math.sqrt(2.0 * math.pi * substance.mass * kT)
-
-
 # ------------------------------------------------------------------ how fast
 
 
@@ -85,7 +81,8 @@ def test_a_drop_of_any_size_in_a_heat_bath_emits_what_hertz_and_knudsen_say(numb
         max(capacity * kT, PHI) + 25.0 * spread,
         limit=200,
     )
-    assert mean == pytest.approx(hertz_knudsen(kT), rel=1e-6)
+    flux = WATER.saturation_pressure(kT) / math.sqrt(2.0 * math.pi * MASS * kT)
+    assert mean == pytest.approx(AREA * flux, rel=1e-6)
 
 
 def test_the_substance_knows_the_vapour_pressure_that_the_rate_implies():

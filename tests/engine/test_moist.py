@@ -22,7 +22,6 @@ from atmosbox.engine import (
 )
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
-from atmosbox.engine.exact import parcelset
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 from atmosbox.scene.statistics import block_average
@@ -132,12 +131,6 @@ def watched(parcel, check):
     else:
         parcel.advance((parcel.steps + 1) * parcel.time_step)
         check(parcel.time)
-
-
-@pytest.fixture
-def by_single_events(monkeypatch):
-    """Make a box of the exact engine return after every event."""
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
 
 
 # ------------------------------------------------------------------ energy and water

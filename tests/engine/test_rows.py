@@ -4,7 +4,6 @@ Whole boxes are not compared with another run, which would diverge by chaos, but
 double precision, computed from the engine's own state.
 """
 
-import functools
 import math
 
 import numpy as np
@@ -96,11 +95,6 @@ def test_the_quick_test_leaves_out_no_molecule_that_is_met(seed, width, head_on,
 # ------------------------------------------------------------------ whole boxes
 
 
-@functools.cache
-def all_pairs(number):
-    return np.triu_indices(number, 1)
-
-
 def next_pair(parcel):
     """Return the two molecules that touch first, of those that reach no wall before, and when [time from now]."""
     _, x, v, _ = parcel.snapshot()
@@ -112,7 +106,7 @@ def next_pair(parcel):
     gap = np.minimum(x - radius[:, None], parcel.length - radius[:, None] - x)
     with np.errstate(divide="ignore"):
         free = (np.maximum(gap, 0.0) / speed).min(axis=1)
-    i, j = all_pairs(len(x))
+    i, j = np.triu_indices(len(x), 1)
     r, u = x[i] - x[j], v[i] - v[j]
     b, a, c = (np.einsum("pa,pa->p", *two) for two in ((r, u), (u, u), (r, r)))
     c -= (radius[i] + radius[j]) ** 2

@@ -23,7 +23,6 @@ from atmosbox.engine import (
     RefusedError,
     Specular,
     SquareWell,
-    Substance,
 )
 from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
@@ -32,12 +31,10 @@ from atmosbox.engine.exact import parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
-from tests.engine.boxes import SMOOTH, WARM
+from tests.engine.boxes import SMOOTH, WARM, WATER
 from tests.engine.test_drop import box as drop_box
 from tests.engine.test_moist import box as moist_box
 from tests.engine.test_parcelset import box as exact_box
-
-WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 
 
 def gas(number=64, side=12.0, seed=5):
@@ -96,10 +93,6 @@ in_each_box = pytest.mark.parametrize("name", BOXES)
 
 class Stop(Exception):
     """What a watch may raise, as Ctrl-C does."""
-
-
-def through_pickle(box):
-    return pickle.loads(pickle.dumps(box))
 
 
 def through_a_file(box, make):
@@ -182,7 +175,8 @@ def test_a_copy_does_what_the_original_does(name):
     box = BOXES[name]()
     box.advance(20.0)
     then = bits(box)
-    twins = {"copy": copy.deepcopy(box), "pickle": through_pickle(box), "file": through_a_file(box, BOXES[name])}
+    twins = {"copy": copy.deepcopy(box), "pickle": pickle.loads(pickle.dumps(box))}
+    twins["file"] = through_a_file(box, BOXES[name])
     for how, twin in twins.items():
         assert bits(twin) == then, how
         twin.advance(40.0)

@@ -7,20 +7,14 @@ import pytest
 
 from atmosbox import theory
 from atmosbox.engine import ParcelSet, Periodic, RandomNumbers, maxwell_velocities, random_positions
-
-
-def shortest(x, sides, periodic):
-    """Return the shortest distance of two centres."""
-    apart = x[:, None] - x[None]
-    apart -= np.where(periodic, sides * np.rint(apart / sides), 0.0)
-    return np.linalg.norm(apart, axis=2)[np.triu_indices(len(x), 1)].min()
+from tests.engine.boxes import apart
 
 
 @pytest.mark.parametrize("periodic", [(False,) * 3, (True, True, False), (True,) * 3])
 def test_scattered_molecules_are_apart_and_inside_their_walls(periodic):
     sides = np.array([8.0, 9.0, 10.0])
     x = random_positions(tuple(sides), np.ones(400), np.random.default_rng(1), periodic=periodic)
-    assert shortest(x, sides, periodic) >= 1.0
+    assert apart(x, x, sides, periodic)[np.triu_indices(400, 1)].min() >= 1.0
     wall = np.where(periodic, 0.0, 0.5)
     assert (x >= wall).all()
     assert (x <= sides - wall).all()

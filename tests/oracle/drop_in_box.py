@@ -12,8 +12,6 @@ n molecules and s dissolved particles.
 import numpy as np
 from scipy.special import gammaln
 
-__all__ = ["chances", "critical", "radii", "room", "vapour_over_drop"]
-
 
 def radii(n, core, ball):
     """Return the radius of a drop of n molecules."""

@@ -115,11 +115,11 @@ def new_tab(new_tab):
 @pytest.fixture
 def opened(new_tab, usual_tab, site):
     """Return a function that opens a page without a network; any error in the page fails the test."""
-    tabs, faults = [], []
+    tabs, faults, own = [], [], ("file:", "blob:", "data:")
     heard = {
         "pageerror": lambda error: faults.append(str(error)),
         "console": lambda said: faults.append(said.text) if said.type == "error" else None,
-        "request": lambda asked: faults.append(asked.url) if is_outside(asked.url) else None,
+        "request": lambda asked: faults.append(asked.url) if not asked.url.startswith(own) else None,
     }
 
     def page(name, before="", **look):
@@ -145,8 +145,3 @@ def opened(new_tab, usual_tab, site):
 def run():
     """Return a function that makes up a run."""
     return made
-
-
-def is_outside(address):
-    """Return whether an address is neither the page's own file nor data inside it."""
-    return not address.startswith(("file:", "blob:", "data:"))

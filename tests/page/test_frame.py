@@ -7,8 +7,6 @@ import numpy as np
 from atmosbox.page.frame import clumps, encode
 from atmosbox.page.stage import MOST, chosen, share
 
-NO_DROPS = np.zeros((0, 4))
-
 
 def read(frame):
     """Return the content of the bytes of a frame, decoded as its docstring describes."""

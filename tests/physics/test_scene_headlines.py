@@ -13,16 +13,11 @@ from atmosbox import scenarios
 from atmosbox.simulation import runner
 
 
-def run(scene, **settings):
-    """Return the outcome of a scene."""
-    return runner.execute(runner.prepare(scene, settings))
-
-
 def ascents(seeds, **settings):
     """Return how much too warm rising parcels are along their pressures [K], and the last of them."""
     warmer = []
     for seed in seeds:
-        found = run("lifting-dry", seed=seed, **settings).dataset
+        found = runner.execute(runner.prepare("lifting-dry", {"seed": seed, **settings})).dataset
         warmer.append(found.parcel_temperature.values - found.adiabat_temperature.values)
     return np.array(warmer), found
 

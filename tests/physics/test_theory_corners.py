@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError
 from atmosbox.simulation import runner
-from tests.few_frames import cut
+from tests.few_frames import few_frames_of
 
 SHORT = ("duration", "ascent", "travel")
 FEW = 300
@@ -46,12 +46,8 @@ SILENT = {"virial_pressure_theory", "roll_speed_theory"}
 """Results of theory that are NaN where the series does not converge, or where no theory is known."""
 
 
-@pytest.fixture(scope="module", autouse=True)
-def fewer_frames():
-    """Cut the runs of a scene into fewer frames."""
-    with pytest.MonkeyPatch.context() as patch:
-        cut(patch, FRAMES)
-        yield
+few_frames = few_frames_of(FRAMES)
+"""Cut the runs of a scene into fewer frames."""
 
 
 def values(scene, parameter):

@@ -8,7 +8,6 @@ the same more finely.
 import json
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -47,12 +46,6 @@ LONG = pytest.param("mountains", marks=pytest.mark.nightly)
 
 def run(scene, save_molecules=False, **settings):
     return runner.execute(runner.prepare(scene, {**SHORT[scene], **settings}, save_molecules=save_molecules))
-
-
-@cache
-def usual(scene):
-    """Return the run of a scene that several tests use."""
-    return run(scene)
 
 
 def found(outcome):
@@ -132,7 +125,7 @@ def test_neither_a_tenth_less_water_nor_a_pseudo_adiabat_is_within_what_is_allow
 
 
 def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
-    keeps, rains = usual("lifting-moist"), run("lifting-moist", rain=True, cloud_water=0.0)
+    keeps, rains = run("lifting-moist"), run("lifting-moist", rain=True, cloud_water=0.0)
     is_sound(rains)
     assert "rain_mixing_ratio" not in keeps.dataset
     fallen, held = rains.dataset.rain_mixing_ratio.values, rains.dataset.cloud_liquid_water_mixing_ratio.values

@@ -100,15 +100,11 @@ def test_a_sounding_that_ends_below_the_el_has_none_but_energy():
     assert 0.0 < found.cape < indices(air).cape
 
 
-def two_caps():
-    """Air in which a parcel is buoyant twice: below a warm layer, and above it."""
-    air = weisman_klemp(0.016)
-    height = hydrostatic_height(air)
-    warm = np.where((height > 3000.0) & (height < 3400.0), 8.0, 0.0)
-    return Sounding(air.pressure, air.temperature + warm, air.dewpoint)
-
-
 def test_of_several_levels_of_free_convection_the_highest_is_taken():
-    air = two_caps()
+    # buoyant twice: below a warm layer, and above it
+    base = weisman_klemp(0.016)
+    height = hydrostatic_height(base)
+    warm = np.where((height > 3000.0) & (height < 3400.0), 8.0, 0.0)
+    air = Sounding(base.pressure, base.temperature + warm, base.dewpoint)
     lowest = mpcalc.lfc(*straight(air), which="bottom")[0].to("Pa").magnitude
     assert indices(air).lfc.pressure < 70_000.0 < lowest

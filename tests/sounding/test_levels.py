@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from atmosbox.cli import app
 from atmosbox.errors import SoundingError
 from atmosbox.file import netcdf
 from atmosbox.scene.sounding import Sounding, read
 from atmosbox.scene.sounding.column import QUANTITIES, check_plausible, stated_columns
 from atmosbox.scene.sounding.profile import LARGEST_GAP, ROUNDING, check_levels
+from tests.in_process import typed
 
 PRESSURE = np.array([1000e2, 900e2, 800e2, 650e2, 500e2, 300e2, 100e2])
 TEMPERATURE = np.array([298.0, 292.0, 286.0, 275.0, 262.0, 233.0, 210.0])
@@ -162,7 +161,7 @@ def doubtful(tmp_path):
 
 def run(folder, doubtful, *words):
     words = ["run", "lifting-sounding", "--set", f"sounding={doubtful}", "--set", "molecules=200", *words]
-    return CliRunner().invoke(app, [*words, "--set", "ascent=20", "--out", str(folder / "x.nc")])
+    return typed(*words, "--set", "ascent=20", "--out", str(folder / "x.nc"))
 
 
 def test_a_doubtful_file_is_warned_of_in_the_file_too_and_strict_refuses_it(tmp_path, doubtful):
