@@ -68,8 +68,8 @@ numpydoc_xref_param_type = False
 # Their pages are on the network, and the site has to be built, and read, without one.
 nitpick_ignore_regex = [
     (r"py:.*", r"(numpy|np|npt|xarray|xr|netCDF4|matplotlib|pathlib|types|typing|collections|os)(\..*)?"),
-    (r"py:class", r"ArrayLike|NDArray|Figure|Path|Progress|RunDataset|Show"),
-    (r"py:class", r"tuple\[str"),  # of an annotation that is split at its bars
+    (r"py:class", r"ArrayLike|NDArray|Figure|ModuleType|Path|Progress|RunDataset|Show"),
+    (r"py:class", r"(tuple|Mapping)\[str"),  # of an annotation that is split at its bars
 ]
 
 html_theme = "furo"
