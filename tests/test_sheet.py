@@ -381,8 +381,8 @@ def test_a_sheet_in_a_language_that_its_scene_has_not_is_refused_with_one_senten
     for written, said in [
         ("goal = 'c'", "notice is missing or has other entries than the English file"),
         ("goal = 'c'\nnotice = []", "notice is missing or has other entries"),
-        ("goal = 'c'\n[[notice]]\nanswer = 'd'", "notice 1, answer is no text of the English file: remove it"),
-        ("goal = 'c'\n[[notice]]\nask = 'd'\nlines = 3", "notice 1, lines is no text of the English file"),
+        ("goal = 'c'\n[[notice]]\nanswer = 'd'", "notice 1, answer is not a text of the English file: remove it"),
+        ("goal = 'c'\n[[notice]]\nask = 'd'\nlines = 3", "notice 1, lines is not a text of the English file"),
         ("goal = 'c'\n[[notice]]\nask = '{{ A.molecule }}'", "notice 1, ask: molecule is asked for before"),
     ]:
         path.write_text(written, encoding="utf-8")

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.wells.attraction import RandomBath, SquareWell
 
 _HOMES = {
-    "core.course": "Course",
-    "core.lift": "FollowPressure",
+    "core.lift": "Course FollowPressure",
     "core.packing": "packing_fraction",
     "core.parcel": "Driver Parcel Snapshot",
     "core.random": "RandomNumbers",
@@ -48,8 +47,8 @@ _HOMES = {
     "core.walls": "HeatBath Periodic Piston Specular Wall",
     "exact.parcelset": "ParcelSet",
     "liquid.substance": "Drops Liquid Mist Pool Substance",
-    "start.clearing": "clear_of_drops",
     "start.lattice": "lattice_positions",
+    "start.overlap": "clear_of_drops",
     "start.scatter": "random_positions",
     "start.start": "EqualSpeeds Maxwell Placed Rotating Scattered Start",
     "start.velocity": "equal_speeds maxwell_velocities rotational_energies two_halves",

@@ -128,7 +128,7 @@ def _overlaid(english: Any, told: Any, place: str) -> Any:
     match english, told:
         case dict(), dict():
             for name in sorted(told.keys() - (english.keys() - _DATA)):
-                raise ConfigError(f"{place}{shown(name)} is no text of the English file: remove it")
+                raise ConfigError(f"{place}{shown(name)} is not a text of the English file: remove it")
             kept = _DATA if "theory" in told else {*_DATA, "theory"}  # a formula without words is the same
             return {
                 name: each if name in kept else _overlaid(each, told.get(name), f"{place}{name}, ")

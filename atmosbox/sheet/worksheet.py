@@ -25,7 +25,7 @@ from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
 
-WORDS = Path(__file__).with_suffix(".sheet.toml")
+WORDS = Path(__file__).with_name("generic.sheet.toml")
 """The text of a sheet for a scene without a sheet of its own."""
 MOST_SETTINGS = 6
 """Greatest number of settings that the sheet names."""
