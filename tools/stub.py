@@ -28,8 +28,7 @@ from atmosbox.interface import plot as plot
 from atmosbox.interface import scenes as scenes
 from atmosbox.interface import show as show
 from atmosbox.interface import sweep as sweep
-from atmosbox.interface.run_dataset import Show
-from atmosbox.interface.run_dataset import RunDataset
+from atmosbox.interface.run_dataset import RunDataset, Show
 from atmosbox.version import __version__ as __version__
 
 __all__ = ["__version__", "compare", "open", "plot", "run", "scenes", "show", "sweep"]
