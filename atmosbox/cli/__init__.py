@@ -12,8 +12,8 @@ Each command is one file: its options on top, below them what it does. A new one
 Results as text and as JSON, tables, streams and the progress bar are in `atmosbox.text`, which Python uses too.
 
 The result goes to stdout and everything else to stderr. The exit status is 0 if all went well, 1 if something
-failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-C and 143 after a request to
-terminate.
+failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-C, 143 after a request to
+terminate and 129 when the terminal is closed.
 """
 
 import atexit

@@ -5,6 +5,7 @@
 `insertion`         a molecule leaves the box, or enters it at a free place
 `moist_account`     the properties and tallies of a box with liquid
 `moist`             the loop over events, with a mist or a pool
+`moist_loop`        the loop of the engine for one set of modes
 `moist_parcelset`   the box of moist air, advanced exactly
 `drop_shape`        drops as bodies, and the effects of their surface and of salt dissolved in them
 `drop`              the loop over events, with drops
