@@ -1,10 +1,8 @@
 """One frame as bytes: positions and speeds of the molecules, and the drops; and liquid that has no position.
 
-The picture of liquid that has no position in the model: a mist is drawn as clumps, a pool and rain as layers.
-
 In the model, a mist is an area that vapour molecules hit and a number of molecules in the mist; a pool is the floor and
-a number of molecules. The engine does not follow these molecules. The page draws the right amount of liquid, at places
-of its own choice, and tells the reader so.
+a number of molecules. The engine does not follow these molecules. The page draws the right amount of liquid, a mist as
+clumps, a pool and rain as layers, at places of its own choice, and tells the reader so.
 """
 
 from __future__ import annotations

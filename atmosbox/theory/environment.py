@@ -1,13 +1,11 @@
 r"""The environment of a parcel: an atmosphere at rest of constant lapse rate, and the standard atmosphere.
 
 Hydrostatic balance :math:`dp/dz = -\rho g` with the ideal gas law. Heights are geopotential, gravity does not
-change with height, units are SI.
-
-The International Standard Atmosphere: layers of constant lapse rate from the ground to 80 km.
+change with height, units are SI. The International Standard Atmosphere has layers of constant lapse rate from the
+ground to 80 km.
 
 References
 ----------
-ISO 2533:1975, Standard Atmosphere.
 ISO 2533:1975, Standard Atmosphere; ICAO Doc 7488/3 (1993), Manual of the ICAO Standard Atmosphere.
 """
 

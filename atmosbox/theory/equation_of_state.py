@@ -1,22 +1,15 @@
 r"""Spheres and discs with excluded volume: their pressure beside that of an ideal gas, and their free energy.
 
-The packing fraction :math:`\phi = \pi n \sigma^3 / 6` is the share of the space that the spheres fill. All quantities
-here depend on it alone, never on the temperature, because hard spheres have no energy except that of their motion.
-
-Discs: the gas of a two-dimensional scene, with all centres and velocities in one plane.
-
-The packing fraction is the share of the area covered, :math:`\eta = \pi n \sigma^2 / 4` with n molecules per
-area.
-
-The effect of the excluded volume of molecules on entropy, free energy and the adiabat.
+The packing fraction is the share of the space that spheres fill, :math:`\phi = \pi n \sigma^3 / 6`, or of the area that
+discs cover, :math:`\eta = \pi n \sigma^2 / 4` with n molecules per area. All quantities here depend on it alone, never
+on the temperature, because hard spheres have no energy except that of their motion.
 
 References
 ----------
 .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
 .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B: fitted to molecular dynamics
    of 0.004 % accuracy at reduced densities up to 1.03, with the virial coefficients B2 to B6 built in.
-Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B. Henderson, D. (1975),
-doi:10.1080/00268977500102511.
+.. [3] Henderson, D. (1975), doi:10.1080/00268977500102511 (discs).
 """
 
 from collections.abc import Callable

@@ -3,13 +3,8 @@ r"""Water vapour in the air: saturation, dewpoint, mixing ratio, relative humidi
 A molecule of water is held in the liquid by one binding energy, :math:`\varphi`; it has the heat capacity 4 k as
 vapour, at constant pressure, and 9.14 k as liquid. These three numbers give the latent heat and, by the law of
 Clausius and Clapeyron, the vapour pressure. One pair of numbers is taken from measurement: 2.50084e6 J/kg and 611.2 Pa
-at 273.16 K. Temperatures are in K, pressures in Pa.
-
-The saturation vapour pressure of measured water: the standard that the model's own formula is compared with.
-
-Nothing in a simulation uses it.
-
-How much water vapour is in the air: vapour pressure, mixing ratio, relative humidity, virtual temperature.
+at 273.16 K. The vapour pressure of measured water (IAPWS) is here to compare with; nothing in a
+simulation uses it.
 
 Names are those of MetPy. Temperatures are in K, pressures in Pa, mixing ratios in kg per kg of dry air, relative
 humidities in parts of one.

@@ -1,17 +1,11 @@
 r"""Kinetic theory of gases: the speeds of molecules, how often they collide, and how they hit and leave walls.
 
-How often molecules collide, and how far they fly between collisions.
-
-Enskog's theory: the rate of a thin gas, times the pair distribution at contact :math:`g(\sigma)`. For hard spheres in
-equilibrium it is exact.
-
-The molecules that hit a wall, and those that leave it.
+How often molecules collide follows from Enskog's theory: the rate of a thin gas, times the pair distribution at contact
+:math:`g(\sigma)`. For hard spheres in equilibrium it is exact.
 
 Fast molecules reach a wall more often than slow ones, so those that cross a plane are not a representative sample: they
 carry 2 kT of energy each, not 3/2 kT. A heat bath must send out molecules with the same distribution, or the gas beside
 it is too cold.
-
-A gas of hard spheres in a cube with walls: how dense it is at a pressure, how often its molecules collide.
 
 Near a wall a molecule has fewer partners, so collisions are rarer than in open space, and Z - 1 is a little smaller.
 

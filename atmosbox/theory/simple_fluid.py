@@ -5,9 +5,8 @@ density :math:`\rho^* = n \sigma^3`, the pressure :math:`p \sigma^3 / \varepsilo
 :math:`\lambda \sigma`. Two molecules are in each other's well :math:`1 + x` times as often as without attraction,
 :math:`x = e^{1/T^*} - 1`.
 
-Three simple fluids, argon, nitrogen and methane: their critical points and measured vapour pressures.
-
-Molecules with a square well represent such a fluid if their critical temperature and density are those of the fluid:
+The fluids are argon, nitrogen and methane, with their critical points and measured vapour pressures. Molecules with a
+square well represent such a fluid if their critical temperature and density are those of the fluid:
 :math:`\varepsilon = k T_c / T_c^*` and :math:`\sigma^3 = \rho_c^* / n_c`.
 
 References

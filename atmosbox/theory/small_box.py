@@ -1,12 +1,8 @@
 r"""The number of molecules of vapour in a small box that also holds liquid: its exact distribution at equilibrium.
 
-These are the exact distributions at equilibrium, for any number of molecules; every law of evaporation and condensation
-must lead to them. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
-
-The vapour in a small parcel of air over water, in equilibrium at constant pressure and without heat exchange.
-
-This is the exact distribution at equilibrium, for any number of molecules, even for one: every law of evaporation and
-condensation under a piston must lead to it. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
+The box is closed, at a given temperature or isolated; or it is a parcel of air over water at constant pressure, without
+heat exchange. The distributions are exact for any number of molecules, even for one: every law of evaporation and
+condensation must lead to them. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 """
 
 import math

@@ -1,7 +1,5 @@
 r"""A piston that follows a given pressure, as a parcel follows that of its environment on its planned ascent.
 
-A piston that follows a given pressure, as a parcel follows that of its environment.
-
 At the start of each interval the ceiling is given the velocity
 
 .. math:: u = \frac{h - \sigma}{\Gamma} \left[ S + \frac{\ln(p / p_{env})}{20 \tau} \right],

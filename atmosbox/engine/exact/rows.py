@@ -1,8 +1,32 @@
 r"""The rows of cells, where they hold copies of trajectories, and the quick test of eight copies at once.
 
+Beside the indices of its members, the row of a cell holds a copy of the trajectory of each in single precision,
+relative to the centre of the cell and to a common time, the start of the epoch. So all data that `screen` needs for
+eight members lie in one piece of memory. The row of a cell is ``stride`` words of four bytes, whole lines of 64 bytes::
+
+    | occupied . . . | names | x | y | z | vx | vy | vz | extent | names | x | ...
+      half a line of     8     8   8   8   8    8    8      8
+      64 bytes       |<---------------- a block --------------->|<-- the next --
+
+The first 64 bits of a row tell which of its places are occupied, at most `MOST`. "names" are the indices of the
+members. Extents are there only if molecules differ in size. In gravity the copies are in the frame that falls from the
+start of the epoch, in which all paths are straight.
+
+Along each axis a molecule is in one cell, or in two neighbours: that is its slot (`cells`). But here it keeps a
+cell that it has left until its next event, because leaving a cell is not an event. Of its cells, eight at most, no two
+have the same parities of their three numbers. So eight bits tell which cells they are (`members_of`), and eight bytes
+of its event tell its place in the row of each::
+
+    cell numbers (x, y, z)   even even even   even even odd   ...   odd odd odd
+    bit, and byte of place         0                1                    7
+
+On a periodic axis the number of cells is even, so that parities continue across the border, and at least four: then the
+image of a member that belongs to a row is the one nearest to the centre of its cell, from which no member is further
+than one and a half cells.
+
 Most pairs in a cell miss each other, and to find that out is most of the work of a search. The processor takes eight
 single-precision numbers in one or two instructions, so the rows of cells hold copies of trajectories in single
-precision (`rows`), and `screen` tells which of eight may be met before a given time. It may name one that is not met,
+precision, and `screen` tells which of eight may be met before a given time. It may name one that is not met,
 but it never leaves out one that is. The exact test of those that it names is made in double precision.
 
 **Why none is left out.** Take a pair that shares the cell from now until it meets, after :math:`\tau \le T`, at the
@@ -41,32 +65,6 @@ The velocity of a molecule faster than V is stored as NaN, for a copy and for th
 comparison with NaN counts as true. So no molecule is missed because it exceeds the bound, whatever heats it: it is
 tested in double precision alone until the next epoch. Products too small for single precision are smaller than `TINY`,
 which is added as a tolerance for all.
-
-The rows of cells, where they hold copies of trajectories: which molecule has which place in which row.
-
-Beside the indices of its members, the row of a cell holds a copy of the trajectory of each in single precision,
-relative to the centre of the cell and to a common time, the start of the epoch. So all data that `screen` needs for
-eight members lie in one piece of memory. The row of a cell is ``stride`` words of four bytes, whole lines of 64 bytes::
-
-    | occupied . . . | names | x | y | z | vx | vy | vz | extent | names | x | ...
-      half a line of     8     8   8   8   8    8    8      8
-      64 bytes       |<---------------- a block --------------->|<-- the next --
-
-The first 64 bits of a row tell which of its places are occupied, at most `MOST`. "names" are the indices of the
-members. Extents are there only if molecules differ in size. In gravity the copies are in the frame that falls from the
-start of the epoch, in which all paths are straight.
-
-Along each axis a molecule is in one cell, or in two neighbours: that is its slot (`cells`). But here it keeps a
-cell that it has left until its next event, because leaving a cell is not an event. Of its cells, eight at most, no two
-have the same parities of their three numbers. So eight bits tell which cells they are (`members_of`), and eight bytes
-of its event tell its place in the row of each::
-
-    cell numbers (x, y, z)   even even even   even even odd   ...   odd odd odd
-    bit, and byte of place         0                1                    7
-
-On a periodic axis the number of cells is even, so that parities continue across the border, and at least four: then the
-image of a member that belongs to a row is the one nearest to the centre of its cell, from which no member is further
-than one and a half cells.
 """
 
 import math

@@ -1,7 +1,5 @@
 """A molecule leaves the box or enters it: it condenses, or it evaporates into a place without overlap.
 
-A molecule leaves the box or enters it: it condenses, or it evaporates.
-
 The data of a molecule stay in memory. A molecule that is not in the box is in no cell, has no event, and its clock
 reads infinity; predictions of contacts with it are stale.
 """

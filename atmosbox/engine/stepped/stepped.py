@@ -1,27 +1,5 @@
 r"""The time-stepped engine: all molecules move, then those that overlap and approach collide.
 
-Nothing moves meanwhile. So all ways of finding the pairs find the same ones: testing all :math:`N (N - 1) / 2`, as
-applets do, or only those in nearby cells, in a time proportional to N.
-
-The rules that can be chosen:
-
-``PAIRWISE``
-    cells; an overlapping pair that approaches, :math:`r \cdot u < 0`, exchanges the momentum along its line of centres.
-``INDEX_ORDER``
-    the same, but all pairs are tested, in the order of their numbers.
-``LOOK_AHEAD``
-    all pairs; a pair counts as approaching if it is nearer a short time :math:`\epsilon` later. This misses those that
-    graze, :math:`-\epsilon u^2 / 2 < r \cdot u < 0`.
-``EVERY_OVERLAP``
-    cells; also a pair that already moves apart exchanges its momentum, and so turns back: a common mistake. Alone it
-    parts a step later; but if a third molecule comes between, it stays together and collides in every step, the longer
-    a run the more such pairs. At :math:`\delta` = 0.01 a thin gas has a tenth too many collisions in its first ten
-    units of time, and more than half too many later; the energy does not show it.
-
-``LOOK`` only finds the deepest overlap, before the first step.
-
-The time-stepped engine: all molecules move, then those that overlap and approach collide.
-
 Simple programs work in this way, the applets of many courses among them. A step of length :math:`\Delta t` has two
 parts: every molecule moves as if it were alone (`flight`); every pair that now overlaps, and still approaches, gets
 the impulse of a collision. A collision comes late by up to one step, so the pair is nearer than it should
@@ -39,6 +17,26 @@ accuracy.
 The virial is computed with the actual r, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls
 aside, between collisions the sum of r . p changes by twice the kinetic energy alone, and at each collision by the
 amount that the virial counts.
+
+While pairs are searched, nothing moves. So all ways of finding the pairs find the same ones: testing all :math:`N (N -
+1) / 2`, as applets do, or only those in nearby cells, in a time proportional to N.
+
+The rules that can be chosen:
+
+``PAIRWISE``
+    cells; an overlapping pair that approaches, :math:`r \cdot u < 0`, exchanges the momentum along its line of centres.
+``INDEX_ORDER``
+    the same, but all pairs are tested, in the order of their numbers.
+``LOOK_AHEAD``
+    all pairs; a pair counts as approaching if it is nearer a short time :math:`\epsilon` later. This misses those that
+    graze, :math:`-\epsilon u^2 / 2 < r \cdot u < 0`.
+``EVERY_OVERLAP``
+    cells; also a pair that already moves apart exchanges its momentum, and so turns back: a common mistake. Alone it
+    parts a step later; but if a third molecule comes between, it stays together and collides in every step, the longer
+    a run the more such pairs. At :math:`\delta` = 0.01 a thin gas has a tenth too many collisions in its first ten
+    units of time, and more than half too many later; the energy does not show it.
+
+``LOOK`` only finds the deepest overlap, before the first step.
 """
 
 import functools

@@ -1,10 +1,8 @@
 """The kernels that knobs call: gravity, and the walls and the pool of a box with liquid.
 
-Change gravity while a box runs: what `ParcelSet.set_gravity` does.
-
-Gravity is a number among the arguments of each kernel that moves molecules. The kernel here uses the old one. It brings
-all molecules to the present and chooses layers of cells; then the page writes the new gravity into the arguments of all
-kernels, and calls ``place``.
+`gravity_setter` does what `ParcelSet.set_gravity` does. Gravity is a number among the arguments of each kernel that
+moves molecules. This kernel uses the old one. It brings all molecules to the present and chooses layers of cells; then
+the page writes the new gravity into the arguments of all kernels, and calls ``place``.
 """
 
 import functools

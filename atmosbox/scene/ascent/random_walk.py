@@ -1,7 +1,7 @@
 r"""Entropy and rain that a parcel gains by chance on its ascent, and how more or less rain changes its temperature.
 
-An infinitely slow parcel keeps its entropy S. Three processes change S; rates are per mean free time at the start, S is
-that of the whole parcel, in k, and e is the rate of expansion.
+**Entropy.** An infinitely slow parcel keeps its entropy S. Three processes change S; rates are per mean free time at
+the start, S is that of the whole parcel, in k, and e is the rate of expansion.
 
 * **Friction**: :math:`D e^2 \tau N`, with D as in `atmosbox.theory.DISSIPATION`. A molecule carries momentum of the
   flow until it collides or, sooner, hits a droplet.
@@ -15,12 +15,10 @@ that of the whole parcel, in k, and e is the rate of expansion.
 By the fluctuation-dissipation theorem friction and condensation make the variance of S grow at twice the rate at which
 they produce S.
 
-How far fluctuations change the rain of a parcel, and how more or less rain changes the temperature afterwards.
-
-A cloud of few molecules fluctuates about its equilibrium; its surplus falls out molecule by molecule, and what has
-fallen does not come back. Two numbers describe the result: R, the number of molecules that have rained in excess of the
-average, and S, the excess of entropy of the parcel, in k, over theory's parcel at the same temperature with as much
-water.
+**Rain.** A cloud of few molecules fluctuates about its equilibrium; its surplus falls out molecule by molecule, and
+what has fallen does not come back. Two numbers describe the result: R, the number of molecules that have rained in
+excess of the average, and S, the excess of entropy of the parcel, in k, over theory's parcel at the same temperature
+with as much water.
 
 **How they grow.** On average the cloud holds m molecules more than it can keep; at a given moment it holds
 :math:`m + x` more, where x has the standard deviation s (`near_equilibrium`). The cloud lacks each molecule that has
