@@ -4,8 +4,8 @@ A molecule with f degrees of freedom has the heat capacity :math:`(f/2) k` at co
 :math:`(f/2 + 1) k` at constant pressure. Air has f = 5, three of translation and two of rotation; spheres
 that do not rotate have 3, and cool faster.
 
-An infinitely slow ascent follows the adiabat. One of some hundred mean free times deviates a little: it ends too warm,
-and the excluded volume of molecules cools it.
+An infinitely slow ascent follows the adiabat. One of some hundred mean free times deviates a little: its finite rate
+warms it, and the excluded volume of its molecules cools it.
 """
 
 import functools
