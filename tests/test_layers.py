@@ -153,6 +153,20 @@ def test_folders_do_not_import_each_other_in_a_circle():
     assert set(LAYERS) - set(order) <= {"cli", "__main__"}
 
 
+def test_files_do_not_import_each_other_in_a_circle():
+    files = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in ROOT.glob("atmosbox/**/*.py")}
+    below = {}
+    for name, path in files.items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        blocks = [tree, *(node for node in tree.body if isinstance(node, ast.If))]  # with those for types alone
+        told = [node for block in blocks for node in block.body if isinstance(node, ast.ImportFrom)]
+        below[name] = {f"{node.module}.{each.name}" for node in told for each in node.names} & set(files)
+        below[name] |= {node.module for node in told} & set(files)
+    while ready := {name for name in below if not below[name] & set(below)}:
+        below = {name: below[name] for name in set(below) - ready}
+    assert sorted(below) == []
+
+
 PUBLIC = {"_replace", "_asdict", "_fields", "_make", "_exit", "_get_tick", "_repr_png_"}
 """Of named tuples, of Python, of matplotlib and of IPython."""
 

@@ -32,8 +32,7 @@ from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared
 from atmosbox.scene.conversion import declared_unit
 from atmosbox.scene.instruments import MOMENTS, Lift, Nuclei
-from atmosbox.simulation.link import link_start
-from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.preparation import Prepared, link_start
 from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:

@@ -15,16 +15,13 @@ from __future__ import annotations
 
 import itertools
 import json
-import os
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
-from urllib.parse import quote, unquote
+from urllib.parse import unquote
 
-from atmosbox import scenarios
-from atmosbox.errors import Command, Option, SettingError, shown
+from atmosbox.errors import SettingError
 from atmosbox.scene.panels import from_json, to_json, without_headlines
-from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.version import __version__
 
 if TYPE_CHECKING:
@@ -93,10 +90,10 @@ class Replay:
             knob = knobs.get(turn.name)
             if knob is None:
                 which = f"it has {', '.join(knobs)}" if knobs else "it has none"
-                _refuse(self.link, f"turns the knob {turn.name}, which the scene does not have ({which})")
+                refuse(self.link, f"turns the knob {turn.name}, which the scene does not have ({which})")
             if turn.value is not None and not knob.low <= turn.value <= knob.high:
                 allowed = f"{knob.low:g} to {knob.high:g} {knob.unit}".strip()
-                _refuse(self.link, f"turns {turn.name} to {turn.value:g}, outside its range of {allowed}")
+                refuse(self.link, f"turns {turn.name} to {turn.value:g}, outside its range of {allowed}")
 
     def attributes(self, setup: Setup, others: Mapping[str, Any]) -> dict[str, Any]:
         """Return the attributes of a file that say which knobs are turned; its panels show no headlines.
@@ -142,7 +139,7 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
     told = text.strip().rpartition("#")[2]
     found = _LINK.fullmatch(told) if len(told) <= _LONGEST else None
     if found is None:
-        _refuse(text, "is not a link of a run, or only a part of one")
+        refuse(text, "is not a link of a run, or only a part of one")
     version = unquote(found["version"])
     if version != __version__:
         raise SettingError(
@@ -153,61 +150,21 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
     made = tuple(Turn(int(t[1]), t[2], None if t[3] == "start" else float(t[3])) for t in turns if t is not None)
     frames, in_order = int(found["frames"]), all(a.frame <= b.frame for a, b in itertools.pairwise(made))
     if len(made) < len(turns) or len(made) > _MOST_TURNS or not in_order:
-        _refuse(text, "has turns of knobs that cannot be read")
+        refuse(text, "has turns of knobs that cannot be read")
     if max(frames, *(turn.frame for turn in made), 0) > _MOST_FRAMES:
-        _refuse(text, f"is of more than {_MOST_FRAMES} frames")
+        refuse(text, f"is of more than {_MOST_FRAMES} frames")
     if found["prediction"] and not _PREDICTION.fullmatch(found["prediction"]):
-        _refuse(text, "has a prediction that cannot be read: it needs a variable and five numbers")
+        refuse(text, "has a prediction that cannot be read: it needs a variable and five numbers")
     pairs = [each.split("=") for each in found["settings"].split("&")[1:]]
     settings = {name: unquote(value) for name, value in pairs}
     if len(settings) < len(pairs):
-        _refuse(text, "has a setting twice")
+        refuse(text, "has a setting twice")
     return unquote(found["scene"]), settings | {"seed": found["seed"]}, Replay(f"#{told}", frames, made)
 
 
-def _refuse(link: str, problem: str) -> NoReturn:
+def refuse(link: str, problem: str) -> NoReturn:
     """Refuse a link."""
     raise SettingError("replay", link, problem, "copy the link again from the page, as a whole and in quotes")
-
-
-def link_start(prepared: Prepared) -> str:
-    """Return the part of a link that a run without a turned knob has: all but the seed and the number of frames.
-
-    Examples
-    --------
-    >>> link_start(prepare("temperature", {"molecules": 400, "seed": 7})).partition("&")[2]
-    'scene=temperature&molecules=400'
-    """
-    changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
-    pairs = {"atmosbox": __version__, "scene": os.path.basename(prepared.scene), **changed}
-    return "&".join(f"{name}={quote(str(value), safe='')}" for name, value in pairs.items())
-
-
-def replayed(
-    text: str, scene: str | os.PathLike[str] | None = None, *, save_molecules: bool | None = False
-) -> Prepared:
-    """Return the scene of a link, ready to run as the page ran it.
-
-    `scene` is its path if it is one of your own: a link alone never makes atmosbox run a program.
-
-    Examples
-    --------
-    >>> replayed(f"#atmosbox={__version__}&scene=temperature&molecules=40&seed=7&frames=90&end").settings.molecules
-    40
-    """
-    named, settings, replay = read_link(text)
-    if scene is None and named not in scenarios.names():
-        own = Command("run", (named, Option("replay", "LINK"))) if named.endswith(".py") else Command("list")
-        why = "of your own, whose file must be typed" if named.endswith(".py") else "that there is not"
-        raise SettingError("replay", text, f"is for a scene {why}, {shown(named)}", own)
-    if scene is not None and os.path.basename(scene).replace("_", "-") != named.replace("_", "-"):
-        raise SettingError("replay", text, f"is for the scene {shown(named)}, not for {scene}", "leave one of them out")
-    typed = named if scene is None else scene
-    for told in scenarios.load(typed).Settings.describe():
-        if told.kind == "str" and not told.choices and settings.get(told.name, told.default) != told.default:
-            _refuse(text, f"names a file, {told.name} = {shown(settings[told.name])}, which a link must not")
-    prepared = prepare(typed, settings, engine="exact", save_molecules=save_molecules)
-    return replace(prepared, replay=replay)
 
 
 def check_nothing_changes(what: str, given: Mapping[str, object]) -> None:

@@ -1,4 +1,4 @@
-"""A scenario made ready to run: loaded, its settings checked, its box built."""
+"""A scenario made ready to run: loaded, from its settings or from a link, its settings checked, its box built."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+from urllib.parse import quote
 
 from atmosbox import scenarios
 from atmosbox.engine import PackingError as EnginePackingError
 from atmosbox.engine import RefusedError
 from atmosbox.engine.core.marching import MarchingParcel
-from atmosbox.errors import EngineError, Option, PackingError, SettingError
+from atmosbox.errors import Command, EngineError, Option, PackingError, SettingError, shown
 from atmosbox.scene.engines import EXACT, EngineChoice, choose
 from atmosbox.scene.instruments import Discs
 from atmosbox.scene.settings import Parameter, SceneSettings
@@ -21,10 +22,8 @@ from atmosbox.scene.setup import Setup
 from atmosbox.scene.spelling import field_name
 from atmosbox.simulation import accuracy as accuracies
 from atmosbox.simulation.accuracy import Expectation
+from atmosbox.simulation.link import Replay, read_link, refuse
 from atmosbox.version import __version__
-
-if TYPE_CHECKING:
-    from atmosbox.simulation.link import Replay
 
 _MEMORY = 8e9  # bytes that saved molecules may need
 _SMALL = 10e6  # bytes up to which the molecules are saved unasked
@@ -234,3 +233,43 @@ def keeps_molecules(prepared: Prepared, setup: Setup) -> bool:
     if prepared.save_molecules is not None:
         return prepared.save_molecules
     return _space(prepared, setup) < _SMALL and not any(isinstance(each, Discs) for each in setup.instruments)
+
+
+def link_start(prepared: Prepared) -> str:
+    """Return the part of a link that a run without a turned knob has: all but the seed and the number of frames.
+
+    Examples
+    --------
+    >>> link_start(prepare("temperature", {"molecules": 400, "seed": 7})).partition("&")[2]
+    'scene=temperature&molecules=400'
+    """
+    changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
+    pairs = {"atmosbox": __version__, "scene": os.path.basename(prepared.scene), **changed}
+    return "&".join(f"{name}={quote(str(value), safe='')}" for name, value in pairs.items())
+
+
+def replayed(
+    text: str, scene: str | os.PathLike[str] | None = None, *, save_molecules: bool | None = False
+) -> Prepared:
+    """Return the scene of a link, ready to run as the page ran it.
+
+    `scene` is its path if it is one of your own: a link alone never makes atmosbox run a program.
+
+    Examples
+    --------
+    >>> replayed(f"#atmosbox={__version__}&scene=temperature&molecules=40&seed=7&frames=90&end").settings.molecules
+    40
+    """
+    named, settings, replay = read_link(text)
+    if scene is None and named not in scenarios.names():
+        own = Command("run", (named, Option("replay", "LINK"))) if named.endswith(".py") else Command("list")
+        why = "of your own, whose file must be typed" if named.endswith(".py") else "that there is not"
+        raise SettingError("replay", text, f"is for a scene {why}, {shown(named)}", own)
+    if scene is not None and os.path.basename(scene).replace("_", "-") != named.replace("_", "-"):
+        raise SettingError("replay", text, f"is for the scene {shown(named)}, not for {scene}", "leave one of them out")
+    typed = named if scene is None else scene
+    for told in scenarios.load(typed).Settings.describe():
+        if told.kind == "str" and not told.choices and settings.get(told.name, told.default) != told.default:
+            refuse(text, f"names a file, {told.name} = {shown(settings[told.name])}, which a link must not")
+    prepared = prepare(typed, settings, engine="exact", save_molecules=save_molecules)
+    return replace(prepared, replay=replay)

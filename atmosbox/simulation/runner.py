@@ -17,8 +17,8 @@ from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
-from atmosbox.simulation.link import check_nothing_changes, read_link, replayed
-from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
+from atmosbox.simulation.link import check_nothing_changes, read_link
+from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare, replayed
 from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.restart import Restart, check_alike, from_file, put_back, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify

@@ -19,8 +19,8 @@ from atmosbox.file.netcdf import read
 from atmosbox.lab import page_file as lab_file
 from atmosbox.lab import save_lab
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.simulation.link import read_link, replayed
-from atmosbox.simulation.preparation import prepare
+from atmosbox.simulation.link import read_link
+from atmosbox.simulation.preparation import prepare, replayed
 from atmosbox.simulation.recording import Recording
 from atmosbox.simulation.runner import build
 from tests.in_process import typed
