@@ -79,8 +79,7 @@ def save(
     FileError
         If the file exists, cannot be written, or the run has nothing to film.
     SettingError
-        If format or theme is unknown, pace or duration is not allowed, or an MP4 needs the extra ``movie``, which is
-        not installed.
+        If format or theme is unknown, pace or duration is not allowed, or the extra ``movie`` is not installed.
 
     Examples
     --------
@@ -151,24 +150,14 @@ def _write_mp4(pictures: Iterator[Image.Image], path: Path, chosen: Pace) -> Non
 
 
 def sized(theme: Theme, kind: str) -> Theme:
-    """Return a theme with the size of the pictures of a film.
-
-    Examples
-    --------
-    >>> look = sized(find("notes"), "gif")
-    >>> [round(look.dots_per_inch * side) for side in look.wide]
-    [800, 450]
-    """
+    """Return a theme with the size of the pictures of a film."""
     wide, high = _SIZES[kind][theme.name]
     dots = wide / _WIDE[theme.name]
     return replace(theme, wide=(wide / dots, high / dots), dots_per_inch=dots, grows=False)
 
 
 def _along(dataset: xr.Dataset) -> NDArray[np.float64] | None:
-    """Return the logarithm of time if the first graph over time has a logarithmic axis; else None.
-
-    A film with even steps in it shows the early changes.
-    """
+    """Return the logarithm of time if the first graph over time has a logarithmic axis; else None."""
     over_time = [panel for panel in panels_of(dataset) if panel.kind == "line"]
     time = dataset["elapsed_time"].values.astype(np.float64)
     if not over_time or over_time[0].x_scale != "log" or time[0] <= 0.0:

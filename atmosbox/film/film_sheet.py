@@ -36,14 +36,7 @@ MOST = 5000
 
 @dataclass(frozen=True)
 class Pace:
-    """The frames of a run that a film shows, and how many a second.
-
-    Parameters
-    ----------
-    frames : ndarray of int, (picture,)
-        The frames of the run, in order.
-    fps : float
-        Pictures a second.
+    """The frames of a run that a film shows, (picture,), and how many are shown a second.
 
     Examples
     --------
@@ -75,7 +68,8 @@ def pace(
     frames : int
         Number of frames of the run.
     fps : float, optional
-        Pictures a second; by default 10, or 20 if ``smooth``.
+        Pictures a second; by default 10, or 20 if ``smooth``. A run of few frames is shown with fewer if only
+        ``seconds`` is given.
     seconds : float, optional
         Duration of the film [s]; by default 12, or less if the run has too few frames.
     smooth : bool
@@ -83,12 +77,6 @@ def pace(
     along : ndarray of float, (frame,), optional
         A quantity that increases by even steps from picture to picture, for instance the logarithm of time; by default
         the index of the frame.
-
-    Returns
-    -------
-    Pace
-        The frames. If ``seconds`` is given and ``fps`` is not, a run of few frames is shown with fewer pictures a
-        second.
 
     Raises
     ------
@@ -132,11 +120,8 @@ class Sheet:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
     look : Theme
-        The theme: sizes of type, lines and markers. The context `plot.theme.style` must be active while the sheet is
-        made and used.
+        The theme; the context `plot.theme.style` must be active while the sheet is made and used.
     held : Molecules, optional
         The molecules of the run; without them only the graphs are filmed.
     frames : ndarray of int, optional
@@ -146,20 +131,6 @@ class Sheet:
     ------
     FileError
         If the run has nothing to film.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import Line, Panel, to_json
-    >>> from atmosbox.plot.theme import THEMES
-    >>> air = Panel("line", "Temperature", (Line("elapsed_time", "t", "air"),), "time", "temperature")
-    >>> dataset = xr.Dataset(
-    ...     {"t": ("elapsed_time", [288.0, 290.0], {"units": "K"})},
-    ...     coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
-    ...     attrs={"atmosbox_panels": to_json([air])},
-    ... )
-    >>> Sheet(dataset, THEMES["notes"]).picture(1).shape[2]
-    3
     """
 
     def __init__(

@@ -39,17 +39,6 @@ class Running:
     A histogram of speeds is that of the last frames; these are few, so that a change is seen. The value of a layer is
     the mean over all frames so far. Number and temperature are scaled so that the value at the end is the one of the
     whole run, which was measured in more samples than the file has frames.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> Running(xr.Dataset()).names
-    ()
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
@@ -111,30 +100,7 @@ def _grows(dataset: xr.Dataset, line: Line, running: Running) -> bool:
 
 
 def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running) -> tuple[Panel, ...]:
-    """Return the panels to film: panels that grow, if possible of two kinds.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-    panels : tuple of Panel
-        The panels of the figure of the run.
-    running : Running
-        The averages up to a frame that its molecules give.
-
-    Returns
-    -------
-    tuple of Panel
-        At most two panels, because there is no room for more, or a skew-T alone; none if nothing grows.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0])}, coords={"elapsed_time": [0.0]})
-    >>> warm = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
-    >>> [panel.title for panel in chosen(dataset, (Panel("discs", "A box"), warm), Running(dataset))]
-    ['Warm']
-    """
+    """Return the panels to film: a skew-T alone, or at most two panels that grow, if possible of two kinds."""
     growing = [panel for panel in panels if any(_grows(dataset, line, running) for line in panel.lines)]
     if not growing:
         return ()
@@ -148,15 +114,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running) -> 
 
 
 def drawer(dataset: xr.Dataset, look: Theme) -> Draw:
-    """Return the function that draws a panel with the curves of the whole run; `Graph` then removes what grows.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-    look : Theme
-        The theme.
-    """
+    """Return the function that draws a panel with the curves of the whole run; `Graph` then removes what grows."""
     whole = painter([dataset], look)
 
     def draw(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
@@ -170,32 +128,7 @@ def drawer(dataset: xr.Dataset, look: Theme) -> Draw:
 
 
 class Graph:
-    """The curves of one panel up to a frame.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes, on which the function of `drawer` has drawn.
-    panel : Panel
-        The panel.
-    dataset : xarray.Dataset
-        The run.
-    look : Theme
-        The theme.
-    running : Running
-        The averages up to a frame that its molecules give.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.plot.theme import THEMES
-    >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0, 3.0])}, coords={"elapsed_time": [0.0, 9.0]})
-    >>> panel = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
-    >>> graph = Graph(Figure().add_subplot(), panel, dataset, THEMES["notes"], Running(dataset))
-    >>> graph.show(1)
-    >>> graph.axes.lines[-1].get_ydata().tolist()
-    [3.0]
-    """
+    """The curves of one panel up to a frame, on axes on which the function of `drawer` has drawn."""
 
     def __init__(self, axes: Axes, panel: Panel, dataset: xr.Dataset, look: Theme, running: Running) -> None:
         self.axes, self.panel, self.dataset, self.running = axes, panel, dataset, running

@@ -80,35 +80,8 @@ class Ascent(NamedTuple):
 def ascent_of(dataset: xr.Dataset, start: tuple[float, ...] = (), *, risen: bool = False) -> Ascent:
     """Return the path of the parcel of a run.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, with ``parcel_height``, ``parcel_temperature`` and ``environment_pressure``; with water also
-        ``cloud_liquid_water_mixing_ratio`` and ``largest_haze_mixing_ratio``, with rain ``rain_mixing_ratio``.
-    start : tuple of float
-        Temperature [degC] and pressure [hPa] at height 0, from which the parcel set out; empty if not known.
-    risen : bool
-        Whether frames above the equilibrium level are left out: a parcel does not rise by itself to these.
-
-    Raises
-    ------
-    FileError
-        If one of the first three is missing or empty.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> dataset = xr.Dataset(
-    ...     {
-    ...         "parcel_height": ("elapsed_time", [0.0, 1000.0]),
-    ...         "parcel_temperature": ("elapsed_time", [298.15, 288.4]),
-    ...         "environment_pressure": ("elapsed_time", [1e5, 9e4]),
-    ...     },
-    ...     coords={"elapsed_time": [0.0, 2.0]},
-    ... )
-    >>> way = ascent_of(dataset)
-    >>> way.height.tolist(), way.crosses, way.cloudy.any()
-    ([0.0, 1.0], False, np.False_)
+    ``start`` is the temperature [degC] and the pressure [hPa] at height 0, if known. With ``risen``, frames above the
+    equilibrium level are left out: a parcel does not rise by itself to these.
     """
     time, height, kelvin, pascal = (
         read(dataset, name).values.astype(np.float64)
@@ -129,35 +102,7 @@ def ascent_of(dataset: xr.Dataset, start: tuple[float, ...] = (), *, risen: bool
 
 
 def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme, start: tuple[float, ...] = ()) -> list[Entry]:
-    """Draw the whole path of a parcel through the atmosphere, with its measured temperature at several points.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, as `ascent_of` takes it.
-    start : tuple of float
-        Temperature [degC] and pressure [hPa] at height 0, from which the parcel set out; empty if not known.
-
-    Returns
-    -------
-    list of tuple
-        The entries of the legend: parcel, and cloud and rain where there are any.
-
-    Raises
-    ------
-    FileError
-        If the file lacks height, temperature or pressure of the path.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> way = {"parcel_height": [0.0, 2e3], "parcel_temperature": [298.0, 283.0], "environment_pressure": [1e5, 8e4]}
-    >>> dataset = xr.Dataset({n: ("elapsed_time", v) for n, v in way.items()}, coords={"elapsed_time": [0.0, 1.0]})
-    >>> [label for _, label in draw_atmosphere(Figure().add_subplot(), dataset, THEMES["notes"])]
-    ['parcel']
-    """
+    """Draw the whole path of a parcel with its temperature at several points; return the legend entries."""
     way = ascent_of(dataset, start, risen=True)
     draw_ground(axes, way, theme)
     if way.crosses:
@@ -171,23 +116,7 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme, start: tuple[
 
 
 def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
-    """Draw what is the same in all frames: sky, ground or mountains, and path; set the limits of the axes.
-
-    Parameters
-    ----------
-    way : Ascent
-        The whole path.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
-    >>> axes = Figure().add_subplot()
-    >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, none, one, none, np.nan), THEMES["notes"])
-    >>> [round(float(height), 2) for height in axes.get_ylim()]
-    [-0.6, 6.0]
-    """
+    """Draw what is the same in all frames: sky, ground or mountains, and path; set the limits of the axes."""
     low, high = min(0.0, float(way.height.min())), max(float(way.height.max()), 1e-3)
     room = high - low
     axes.set(xlim=(0.0, 1.0), ylim=(low - 0.12 * room, high + 0.2 * room))
@@ -208,34 +137,9 @@ def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
 
 
 def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], theme: Theme) -> list[Entry]:
-    """Draw the parcel in some frames, and the cloud and the rain that it has made up to a frame.
+    """Draw the cloud and the rain up to the frame ``until``, and the parcel in some frames; return the legend entries.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Axes on which `draw_ground` has drawn.
-    way : Ascent
-        The whole path.
-    until : int
-        Index of the last frame whose cloud and rain are drawn.
-    stations : ndarray of int
-        Indices of the frames in which the parcel is drawn with its temperature and, on a vertical path, its pressure.
-
-    Returns
-    -------
-    list of tuple
-        The entries of the legend: parcel, and cloud and rain where there are any.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
-    >>> way = Ascent(up / 5.0, up, one, one, 1e-3 * (up > 2.0), 5e-4 * one, none, 1.9)
-    >>> axes = Figure().add_subplot()
-    >>> draw_ground(axes, way, THEMES["notes"])
-    >>> [label for _, label in draw_way(axes, way, 8, np.array([0, 8]), THEMES["notes"])]
-    ['parcel', 'cloud']
+    The parcel is drawn in the frames ``stations`` with its temperature and, on a vertical path, its pressure.
     """
     entries: list[Entry] = []
     across, seen = _across(way), way.cloudy & (np.arange(way.height.size) <= until)

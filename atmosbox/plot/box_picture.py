@@ -45,24 +45,15 @@ _WALL, _LID = to_rgba("#efefef"), to_rgba("#8c8c8c", 0.35)
 
 
 def corners(side: Floats) -> Floats:
-    """Return the eight corners of a box, (8, 3); z varies fastest from one corner to the next.
-
-    Examples
-    --------
-    >>> corners(np.array([2.0, 1.0, 1.0]))[4].tolist()
-    [2.0, 0.0, 0.0]
-    """
+    """Return the eight corners of a box, (8, 3); z varies fastest from one corner to the next."""
     return np.array([[a, b, c] for a in (0.0, side[0]) for b in (0.0, side[1]) for c in (0.0, side[2])])
 
 
 def project(position: Floats, side: Floats) -> tuple[Floats, Floats]:
     """Return positions in the picture (n, 2), and how large a unit of length is seen at each of them (n,).
 
-    The camera looks at the middle of a box with these sides, a little from the side and from above.
-
-    Examples
-    --------
-    A nearer length is seen larger, and the wall y = 0 is in front:
+    The camera looks at the middle of a box with these sides, a little from the side and from above. A nearer length is
+    seen larger, and the wall y = 0 is in front:
 
     >>> _, scale = project(np.array([[0.5, 0.0, 0.5], [0.5, 1.0, 0.5]]), np.ones(3))
     >>> bool(scale[0] > scale[1])
@@ -88,30 +79,7 @@ def box_picture(axes: Axes, dataset: xr.Dataset, held: Molecules, look: Theme) -
 
 
 class BoxPicture:
-    r"""The box and its molecules, in perspective; of more than 4000 only 4000 are drawn, at even steps of their index.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes.
-    held : Molecules
-        The molecules of the run.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> one, speed = np.full((1, 1, 3), 1.5e-8), np.full((1, 1), 500.0)
-    >>> side, walls = np.full((1, 3), 3e-8), ("periodic",) * 4 + ("heat_bath", "specular")
-    >>> warm = np.array([[np.nan] * 4 + [288.15, np.nan]])
-    >>> air = Molecules(
-    ...     False, np.zeros(1), one, speed, np.ones(1), np.full(1, 4e-10), None, side, walls, warm, False, False
-    ... )
-    >>> picture = BoxPicture(Figure().add_axes((0.0, 0.0, 1.0, 1.0)), air, THEMES["notes"])
-    >>> picture.show(0)
-    >>> picture.legend()[1:]
-    ['orange: floor kept at 15\xa0°C', 'dashed: periodic sides']
-    """
+    """The box and its molecules in perspective; of more than 4000 only 4000 are drawn, at even steps of their index."""
 
     def __init__(self, axes: Axes, held: Molecules, look: Theme) -> None:
         self.axes, self.held, self.look = axes, held, look

@@ -30,13 +30,7 @@ _TOO_HIGH = "Both meet at a temperature that is too high: the law of their diffe
 
 
 def is_coexistence(dataset: xr.Dataset, names: list[str]) -> bool:
-    """Tell whether a sweep over the temperature has measured a vapour pressure and its slope at two or more of them.
-
-    Examples
-    --------
-    >>> is_coexistence(xr.Dataset(), [])
-    False
-    """
+    """Tell whether a sweep over the temperature has measured a vapour pressure and its slope at two or more of them."""
     return {"vapor_pressure", "clapeyron_slope"} <= set(names) and bool(_known(dataset).sum() > 1)
 
 
@@ -49,14 +43,7 @@ def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
     """Return a sweep with the panels of ln p against 1/T and of the densities of liquid and vapour.
 
     Its headlines are the slope of ln p through all points, with the mean of the slopes L/ΔZ that the runs have measured
-    as its theory, and, if enough temperatures are near it, the critical temperature.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The sweep, for which `is_coexistence` is true.
-    runs : str
-        What a point is: one run, or the mean of several.
+    as its theory, and, if enough temperatures are near it, the critical temperature. ``runs`` says what a point is.
     """
     data = dataset.isel(temperature=np.flatnonzero(_known(dataset)))
     settings = stated(data, "atmosbox_parameters", dict).get("settings", {})

@@ -77,11 +77,6 @@ class Naming:
         A label for each run, all different.
     same : bool
         Whether all runs hold the same numbers.
-
-    Examples
-    --------
-    >>> Naming(("temperature",) * 2, (Change("seed", ("1", "2")),), ("seed 1", "seed 2"), same=False).title
-    'seed 1 / 2'
     """
 
     scenes: tuple[str, ...]
@@ -109,11 +104,6 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
     files : sequence of str
         Names of their files, which label runs of unlike scenes, and runs where nothing or too much differs.
 
-    Returns
-    -------
-    Naming
-        The labels and changes.
-
     Raises
     ------
     FileError
@@ -128,8 +118,6 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
     >>> named = naming([run(5.0), run(25.0)], ["a", "b"])
     >>> named.title, named.labels
     ('temperature 5 degC / 25 degC', ('5 degC', '25 degC'))
-    >>> naming([run(5.0), run(25.0, 2)], ["a", "b"]).labels
-    ('temperature 5 degC, seed 1', 'temperature 25 degC, seed 2')
     """
     made = [parameters(dataset) for dataset in datasets]
     scenes = tuple(str(each.get("scene", "")) for each in made)
@@ -197,11 +185,6 @@ class Measured:
         The measurement and its standard error [unit]; NaN where the run has none.
     theory : float
         The value of the textbook [unit]; NaN where there is none.
-
-    Examples
-    --------
-    >>> Measured(15.0, 0.3, math.nan).value
-    15.0
     """
 
     value: float
@@ -255,17 +238,7 @@ class Compared:
 
 
 def compared(datasets: Sequence[xr.Dataset]) -> tuple[Compared, ...]:
-    """Return the headline numbers that at least two runs have measured.
-
-    Parameters
-    ----------
-    datasets : sequence of xarray.Dataset
-        The runs.
-
-    Returns
-    -------
-    tuple of Compared
-        The numbers, in the units in which tables show them.
+    """Return the headline numbers that at least two runs have measured, in the units in which tables show them.
 
     Raises
     ------
@@ -315,76 +288,14 @@ _DARKER = 0.6  # factor on the colour of a run, for the curves that are calculat
 
 
 def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, theme: str = "notes") -> Figure:
-    """Draw several runs into one figure.
-
-    Parameters
-    ----------
-    datasets : sequence of xarray.Dataset
-        The runs; the panels are those of the first.
-    labels : sequence of str
-        The label of each run in the legend.
-    title : str
-        The heading above the panels.
-    theme : {"notes", "slides"}
-        A figure for a page, or one for a screen.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    FileError
-        If the runs have no panel in common.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import to_json
-    >>> air = Panel("line", "Temperature", (Line("elapsed_time", "t", "air"),), "time", "temperature")
-    >>> runs = [
-    ...     xr.Dataset(
-    ...         {"t": ("elapsed_time", [288.0 + k, 290.0 + k], {"units": "K"})},
-    ...         coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
-    ...         attrs={"atmosbox_panels": to_json([air])},
-    ...     )
-    ...     for k in (0, 5)
-    ... ]
-    >>> [text.get_text() for text in figure(runs, ["cold", "warm"], "Two").axes[0].get_legend().get_texts()]
-    ['cold', 'warm']
-    """
+    """Draw several runs into one figure, with the panels that they share and a label for each run in the legend."""
     look, panels = find(theme), shared_panels(datasets)
     draw = painter(datasets, look, partial(_draw_lines, datasets, labels))
     return page(panels, look, datasets[0], draw, [], _small(datasets) + explanation(datasets[0], panels), title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
-    """Return the panels of the first run that show a measured curve that all other runs have, too.
-
-    Parameters
-    ----------
-    datasets : sequence of xarray.Dataset
-        The runs.
-
-    Returns
-    -------
-    tuple of Panel
-        The panels, with their units filled in.
-
-    Raises
-    ------
-    FileError
-        If there is no such panel.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import to_json
-    >>> shared_panels([xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])})])
-    Traceback (most recent call last):
-    atmosbox.errors.FileError: These runs have no graph in common: compare runs of one scene.
-    """
+    """Return the panels of the first run that show a measured curve that all other runs have, too."""
     first = datasets[0]
     found = []
     for panel in panels_of(first):
@@ -488,7 +399,7 @@ def save(
     theme: str = "notes",
     force: bool = False,
 ) -> Path:
-    """Draw several runs into one figure.
+    """Draw several runs into one figure, and write it.
 
     Parameters
     ----------
@@ -516,12 +427,6 @@ def save(
         If the file exists, cannot be written, or the runs have no graph in common.
     SettingError
         If there are fewer than two or more than six runs, or the format or the theme is unknown.
-
-    Examples
-    --------
-    >>> save([], Naming((), (), (), same=False), "both.png")
-    Traceback (most recent call last):
-    atmosbox.errors.SettingError: FILE is given 0 times: give two to six runs.
     """
     if not 2 <= len(datasets) <= MOST:
         raise SettingError("FILE", None, f"is given {len(datasets)} times", "give two to six runs")
@@ -540,11 +445,5 @@ def heading(names: Naming) -> str:
 
 
 def spoken(text: str) -> str:
-    """Return a text in which units are spelled as they are printed.
-
-    Examples
-    --------
-    >>> spoken("temperature 5 degC / 25 degC")
-    'temperature 5 °C / 25 °C'
-    """
+    """Return a text in which units are spelled as they are printed."""
     return re.sub(r"(?<=\d )\w+", lambda word: spelled(word[0]), text)

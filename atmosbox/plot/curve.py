@@ -18,35 +18,9 @@ __all__ = ["convert", "labelled", "of_difference", "power_of_ten", "spelled"]
 def convert(
     value: ArrayLike, unit: str, shown: str, *, name: str = "value", difference: bool = False
 ) -> NDArray[np.float64]:
-    """Convert a quantity from the units of the file to the units that are shown.
+    """Convert a quantity from the units of the file to the units that are shown; none are given for those of the file.
 
-    Parameters
-    ----------
-    value : array_like
-        The quantity, in ``unit``.
-    unit : str
-        The units in the file.
-    shown : str
-        The units to show; empty for those of the file.
-    name : str
-        Name of the quantity in an error message.
-    difference : bool
-        Whether the value is a difference or an error, to which no offset is added: a difference of 1 K is one of
-        1 degC.
-
-    Returns
-    -------
-    ndarray of float
-        The quantity in ``shown``, in the shape of ``value``.
-
-    Raises
-    ------
-    FileError
-        If the units cannot be converted into each other.
-
-    Examples
-    --------
-    Water freezes at 0 degC, and a difference of 10 K is one of 10 degC:
+    No offset is added to a difference or an error: a difference of 10 K is one of 10 degC.
 
     >>> float(convert(273.15, "K", "degC")), float(convert(10.0, "K", "degC", difference=True))
     (0.0, 10.0)
@@ -66,40 +40,15 @@ def convert(
 
 
 def of_difference(unit: str) -> str:
-    """Return the unit of a difference of two quantities: the difference of two temperatures in degC is in kelvin.
-
-    Parameters
-    ----------
-    unit : str
-        The unit of the two quantities.
-
-    Returns
-    -------
-    str
-        The unit of their difference.
-
-    Examples
-    --------
-    >>> of_difference("degC"), of_difference("hPa")
-    ('K', 'hPa')
-    """
+    """Return the unit of a difference of two quantities: the difference of two temperatures in degC is in kelvin."""
     return "K" if unit == "degC" else unit
 
 
 def labelled(label: str, unit: str, power: int = 0) -> str:
     """Return the label of an axis: the quantity and, unless it is a pure number, its unit in brackets.
 
-    Parameters
-    ----------
-    label : str
-        What the axis shows.
-    unit : str
-        Its unit, as files write it.
-    power : int
-        Exponent of the power of ten by which the numbers on the axis must be multiplied; 0 for none.
+    ``power`` is the exponent of the power of ten by which the numbers on the axis must be multiplied.
 
-    Examples
-    --------
     >>> labelled("speed", "m s-1"), labelled("molecules", "1"), labelled("molecules", "1", 6)
     ('speed (m/s)', 'molecules', 'molecules (10⁶)')
     """
@@ -122,27 +71,7 @@ class Curve(NamedTuple):
 def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
     """Return a variable of the file, or raise an error that says that the file lacks it.
 
-    Parameters
-    ----------
-    name : str
-        Name of a variable or coordinate; "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at the label
-        ``z_low``.
-
-    Returns
-    -------
-    xarray.DataArray
-        The variable.
-
-    Raises
-    ------
-    FileError
-        If the file has no such variable or part, or if the variable has no values.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> float(read(xr.Dataset({"air_pressure": 101325.0}), "air_pressure"))
-    101325.0
+    "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at the label ``z_low``.
     """
     name, _, label = name.rstrip("]").partition("[")
     if name not in dataset.variables:
@@ -163,43 +92,12 @@ def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
-    """Return a line of a panel as numbers.
+    """Return a line of a panel as numbers of one length, in the units of the panel.
 
     A single number beside a list of values is repeated along the list. Values that a logarithmic axis cannot show
     become NaN. If the panel asks for averages, measured values without errors are averaged over equal parts of the x
     axis; their error is then the scatter (standard deviation) of the single values in each part. A measured temperature
     whose error is more than `WORST` of it becomes NaN, such as that of a layer with two molecules.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, in SI units.
-    panel : Panel
-        The panel, which gives the units that are shown.
-    line : Line
-        One of its lines.
-
-    Returns
-    -------
-    Curve
-        Arrays of one length, in the units of the panel.
-
-    Raises
-    ------
-    FileError
-        If a variable is missing, has more than one dimension or another length, or cannot be shown in the
-        panel's units.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> dataset = xr.Dataset(
-    ...     {"air_temperature": ("elapsed_time", [273.15, 283.15], {"units": "K"})},
-    ...     coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
-    ... )
-    >>> line = Line("elapsed_time", "air_temperature", "air")
-    >>> curve(dataset, Panel("line", "Temperature", (line,), y_unit="degC"), line).y.tolist()
-    [0.0, 10.0]
     """
     measured_is_x = panel.measured_across
     axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
@@ -229,34 +127,7 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
 
 
 def edges(dataset: xr.Dataset, panel: Panel, line: Line) -> NDArray[np.float64]:
-    """Return the bounds of the bins of a histogram.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run; the attribute ``bounds`` of the coordinate of the bins names the variable that holds the bounds.
-    line : Line
-        Its measured line.
-
-    Returns
-    -------
-    ndarray of float, (bin + 1,)
-        The bounds, in the units of the panel. Without bounds in the file, they lie half-way between the
-        centres.
-
-    Raises
-    ------
-    FileError
-        If the bins or their bounds are missing or cannot be shown in the panel's units.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> dataset = xr.Dataset(coords={"speed": ("speed", [50.0, 150.0, 250.0], {"units": "m s-1"})})
-    >>> line = Line("speed", "speed_probability_density", "measured")
-    >>> edges(dataset, Panel("histogram", "Speeds", (line,)), line).tolist()
-    [0.0, 100.0, 200.0, 300.0]
-    """
+    """Return the bounds of the bins of a histogram, (bin + 1,); half-way between the centres if the file has none."""
     centre = read(dataset, line.x)
     bounds = dataset.variables.get(str(centre.attrs.get("bounds", f"{line.x}_bnds")))
     if bounds is not None:
@@ -268,30 +139,7 @@ def edges(dataset: xr.Dataset, panel: Panel, line: Line) -> NDArray[np.float64]:
 
 
 def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
-    """Return the unit of an axis of a panel.
-
-    Parameters
-    ----------
-    axis : {"x", "y"}
-        The axis.
-
-    Returns
-    -------
-    str
-        The unit of the panel or, if the panel gives none, that of the file.
-
-    Raises
-    ------
-    FileError
-        If the file lacks the variable.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> dataset = xr.Dataset({"height": ("height", [0.0], {"units": "m"})})
-    >>> unit_of(dataset, Panel("profile", "Air", (Line("height", "height", "air"),)), "y")
-    'm'
-    """
+    """Return the unit of the "x" or "y" axis of a panel or, if the panel gives none, that of the file."""
     first = panel.lines[0]
     unit = panel.x_unit if axis == "x" else panel.y_unit
     return unit or _unit(read(dataset, first.x if axis == "x" else first.y))

@@ -28,13 +28,7 @@ _TRAIL_FRAMES, _MOST_SEGMENTS, _LONGEST_STEP = 12, 6000, 0.1
 
 
 def colour_scale(speed: NDArray[np.floating]) -> Normalize:
-    """Return the colour scale of speeds, from zero to a round number that few exceed.
-
-    Examples
-    --------
-    >>> colour_scale(np.linspace(0.0, 900.0, 100)).vmax
-    1000.0
-    """
+    """Return the colour scale of speeds, from zero to a round number that few exceed."""
     moving = speed[speed > 0.0]
     high = min(np.percentile(moving, 97), _FAST * np.median(moving)) if moving.size else 1.0
     return Normalize(0.0, float(MaxNLocator(4).tick_values(0.0, high)[-1]))
@@ -51,19 +45,7 @@ def colour_bar(axes: Axes, norm: Normalize, look: Theme, *, counted: bool = Fals
 
 
 class DiscPicture:
-    """The discs of a planar scene in their box, seen at right angles to their plane.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> one, place, side = np.ones(1), np.full((1, 1, 3), 2.0), np.full((1, 3), 4.0)
-    >>> held = Molecules(True, one, place, one[None], one, one, None, side, ("specular",) * 6, side, True, False)
-    >>> picture = DiscPicture(Figure().add_subplot(), held, THEMES["notes"])
-    >>> picture.show(0)
-    >>> picture.discs.get_offsets().tolist()
-    [[2.0, 2.0]]
-    """
+    """The discs of a planar scene in their box, seen at right angles to their plane."""
 
     def __init__(self, axes: Axes, held: Molecules, look: Theme, unit: str = "m") -> None:
         self.axes, self.held, self.look, self.unit = axes, held, look, unit
@@ -111,16 +93,7 @@ class DiscPicture:
 
 
 def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
-    """Draw the last frame of a planar scene; return the entries of the legend: the light and the heavy discs, if any.
-
-    Parameters
-    ----------
-    panel : Panel
-        A panel of the kind ``discs``; its ``x_unit`` is the unit of length, nm where it is empty.
-    dataset : xarray.Dataset
-        The run, with ``disc_position`` and ``disc_velocity`` (elapsed_time, molecule, axis), ``disc_diameter`` and
-        ``disc_mass`` (molecule), and ``box_length`` (axis).
-    """
+    """Draw the last frame of a planar scene; return the legend entries of light and heavy discs, if there are both."""
     held = molecules(dataset)
     picture = DiscPicture(axes, held, theme, panel.x_unit or "nm")
     picture.show(len(held.time) - 1)

@@ -33,33 +33,9 @@ MEASURED = (_ORDER["tint"], _ORDER["data"], _ORDER["hollow"])
 def draw_line(
     axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int, **look: Any
 ) -> tuple[Artist, ...]:
-    """Draw one curve of a panel.
+    """Draw one curve in the style of its role, changed by ``look``; return the artists that stand for it in the legend.
 
-    Parameters
-    ----------
-    line : Line
-        One of its lines.
-    values : Curve
-        Its numbers; values that are not finite are not drawn.
-    index : int
-        Number of lines of the same role before this one in the panel.
-    **look
-        Overrides of the style of its role: ``color``, ``linestyle``, ``linewidth``.
-
-    Returns
-    -------
-    tuple of Artist
-        The artists that stand for it in the legend.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> line = Line("z", "p", "air", "theory")
-    >>> values = Curve(np.array([0.0, 1.0]), np.array([1e3, 9e2]), None)
-    >>> (drawn,) = draw_line(Figure().add_subplot(), Panel("line", "Air", (line,)), line, values, THEMES["notes"], 0)
-    >>> drawn.get_color()
-    '#1a1a1a'
+    ``index`` is the number of lines of the same role before this one in the panel. NaN is not drawn.
     """
     x, y, error = values
     style = line_style(line.role, theme, index) | {"zorder": _ORDER[line.role]} | look
@@ -97,20 +73,8 @@ def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], inde
 
 
 def hollow_points(values: Curve) -> NDArray[np.bool_]:
-    """Tell which points of a curve with errors have none, a layer that was seldom visited for instance.
+    """Tell which points of a curve with error bars have none, as in a layer that was seldom visited.
 
-    Parameters
-    ----------
-    values : Curve
-        A curve.
-
-    Returns
-    -------
-    ndarray of bool
-        True at points whose value is known and whose error is not; False everywhere if the curve is drawn as a line.
-
-    Examples
-    --------
     >>> one = np.ones(3)
     >>> hollow_points(Curve(one, one, np.array([0.1, np.nan, 0.2]))).tolist()
     [False, True, False]
@@ -131,29 +95,7 @@ def _crossings(values: NDArray[np.float64]) -> float:
 def draw_steps(
     axes: Axes, panel: Panel, line: Line, dataset: xr.Dataset, theme: Theme, index: int, **look: Any
 ) -> tuple[Artist, ...]:
-    """Draw a histogram, between the bounds of its bins, with the area below tinted unless ``look`` is given.
-
-    Parameters
-    ----------
-    line : Line
-        One of its measured lines.
-    index : int
-        Number of measured lines before this one in the panel.
-    **look
-        Overrides of the style: ``color``, ``linestyle``.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> dataset = xr.Dataset({"f": ("speed", [1.0, 3.0])}, coords={"speed": [50.0, 150.0]})
-    >>> line = Line("speed", "f", "molecules")
-    >>> panel = Panel("histogram", "Speeds", (line,))
-    >>> _, steps = draw_steps(Figure().add_subplot(), panel, line, dataset, THEMES["notes"], 0)
-    >>> steps.get_data().edges.tolist()
-    [0.0, 100.0, 200.0]
-    """
+    """Draw a histogram, between the bounds of its bins, with the area below tinted unless ``look`` is given."""
     x, y, error = curve(dataset, panel, line)
     style = line_style("data", theme, index) | {"linewidth": theme.line, "zorder": _ORDER["data"]} | look
     bounds = edges(dataset, panel, line)
@@ -166,21 +108,7 @@ def draw_steps(
 
 
 def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
-    """Return colour, dashes and width of a curve.
-
-    Parameters
-    ----------
-    role : str
-        Role of the curve, one of `panels.ROLES`.
-    index : int
-        Number of curves of this role before it.
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> line_style("data", THEMES["notes"], 0)["linestyle"]
-    'solid'
-    """
+    """Return colour, dashes and width of a curve; ``index`` is the number of curves of its role before it."""
     colours, dashes, width = CURVES[role]
     look = {"color": colours[index % len(colours)], "linestyle": dashes[index % len(dashes)]}
     return look | {"linewidth": theme.line * width}
@@ -195,25 +123,7 @@ _NEGLIGIBLE = 1e-3
 
 
 def draw(axes: Axes, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, curves: Curves) -> list[Entry]:
-    """Draw a panel of one or several runs, and set the scales and the limits of its axes; return its legend entries.
-
-    Raises
-    ------
-    FileError
-        If the file lacks a variable of the panel.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from functools import partial
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> panel = Panel("profile", "Pressure", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> curves, axes = partial(draw_lines, dataset), Figure().add_subplot()
-    >>> [label for _, label in draw(axes, panel, [dataset], THEMES["notes"], curves)]
-    ['air']
-    """
+    """Draw a panel of one or several runs, and set the scales and the limits of its axes; return its legend entries."""
     if panel.kind == "discs":
         return draw_discs(axes, panel, runs[0], theme)
     if panel.kind == "atmosphere":
@@ -270,30 +180,7 @@ def from_start(panel: Panel, line: Line, values: Curve) -> Curve:
 
 
 def draw_lines(dataset: xr.Dataset, axes: Axes, panel: Panel, theme: Theme) -> tuple[list[Entry], int]:
-    """Draw the curves of one run into axes whose scales are set.
-
-    Returns
-    -------
-    list of tuple
-        The entries of the legend: the artists of a curve, and its label.
-    int
-        Number of values of the longest curve.
-
-    Raises
-    ------
-    FileError
-        If the file lacks a variable of the panel.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> panel = Panel("profile", "Pressure", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> draw_lines(dataset, Figure().add_subplot(), panel, THEMES["notes"])[1]
-    2
-    """
+    """Draw the curves of one run; return the legend entries and the number of values of the longest curve."""
     seen: Counter[str] = Counter()
     entries: list[Entry] = []
     most = 0
@@ -312,24 +199,7 @@ def draw_lines(dataset: xr.Dataset, axes: Axes, panel: Panel, theme: Theme) -> t
 
 
 def set_limits(axes: Axes, panel: Panel, values: int) -> None:
-    """Set the limits of axes: no empty margin beside a graph of many values, and heights that begin at zero.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes, with all curves drawn.
-    values : int
-        Number of values of the longest curve.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> axes = Figure().add_subplot()
-    >>> _ = axes.plot([280.0, 290.0], [50.0, 950.0])
-    >>> set_limits(axes, Panel("profile", "Air", (Line("t", "z", "air"),)), 2)
-    >>> float(axes.get_ylim()[0])
-    0.0
-    """
+    """Set the limits of axes: no margin beside a curve of many ``values``, and heights that begin at zero."""
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
     axes.autoscale_view()

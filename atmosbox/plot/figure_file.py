@@ -30,6 +30,9 @@ def save(
 ) -> Path:
     """Draw the figure of a run into a file.
 
+    The file contains neither a date nor a random number, so that the same run gives the same bytes. A PNG has 300 dots
+    per inch; a PDF embeds its fonts, so that its text can be searched.
+
     Parameters
     ----------
     dataset : xarray.Dataset
@@ -56,11 +59,6 @@ def save(
         If the file exists, its folder does not, it cannot be written, or the run has nothing to draw.
     SettingError
         If the format or the theme is unknown.
-
-    Notes
-    -----
-    The file contains neither a date nor a random number: the identifiers in an SVG are made from a fixed salt, and PDF
-    and SVG have no date. A PNG has 300 dots per inch; a PDF embeds its fonts, so that its text can be searched.
 
     Examples
     --------
@@ -95,26 +93,7 @@ def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False) -> Figure:
 
 
 def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: str, dpi: int = 300) -> bytes:
-    """Return the bytes of a figure.
-
-    Parameters
-    ----------
-    drawing : matplotlib.figure.Figure
-        The figure.
-    kind : {"png", "svg", "pdf"}
-        The format.
-    theme : {"notes", "slides"}
-        The theme it was drawn in.
-    title, parameters : str
-        Title and parameters for the metadata of the file.
-    dpi : int
-        Dots per inch of a PNG.
-
-    Examples
-    --------
-    >>> render(Figure(), "png", "notes", title="Nothing", parameters="{}")[1:4]
-    b'PNG'
-    """
+    """Return the bytes of a figure in a format and a theme, with title and parameters as metadata."""
     told: dict[str, dict[str, Any]] = {
         "png": {"Software": "atmosbox", "Description": parameters},
         "svg": {"Creator": "atmosbox", "Description": parameters, "Date": None},

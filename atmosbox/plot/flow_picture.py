@@ -32,8 +32,6 @@ def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
     The onset is where the rolls first come to half of their speed in the last quarter of the run. There is none where
     the wind blows from the first moment on.
 
-    Examples
-    --------
     >>> wind = ("elapsed_time", np.r_[np.zeros(30), np.arange(30.0)])
     >>> instants(xr.Dataset({"roll_speed": wind}))
     {'Start: no wind': (0, 4), 'Onset: rolls begin': (40, 44), 'Warm air rises': (56, 60)}
@@ -63,15 +61,7 @@ def flow_height(dataset: xr.Dataset, look: Theme) -> float:
 
 
 def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float) -> None:
-    """Draw the pictures in a row, below a distance from the upper end of the page [pt].
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, with the field ``upward_wind``.
-    top : float
-        The distance [pt].
-    """
+    """Draw the pictures in a row, below a distance from the upper end of the page [pt]."""
     drawing, box = measure.figure, flow_height(dataset, look) - _AROUND * look.text
     wide, high = (72.0 * float(size) for size in drawing.get_size_inches())
     bounds = [dataset[f"{name}_bnds"].values / 1000.0 for name in ("distance", "height")]

@@ -35,20 +35,9 @@ _FIXED = "\u00a0"  # a space that no line breaks at
 
 
 class TextMeasure:
-    r"""Measures text and breaks it into lines of any width; matplotlib itself wraps at the edge of the figure only.
+    """Measures text and breaks it into lines of any width; matplotlib itself wraps at the edge of the figure only.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure to write on; its canvas must be one of Agg.
-
-    Examples
-    --------
-    >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
-    >>> drawing = Figure()
-    >>> _ = FigureCanvasAgg(drawing)
-    >>> TextMeasure(drawing).wrap("lapse rate = 9.8 ± 0.1 K/km (of the parcel)", 90.0, 8.0).split("\n")
-    ['lapse rate', '= 9.8 ± 0.1 K/km (of the parcel)']
+    The canvas of the figure must be one of Agg.
     """
 
     def __init__(self, figure: Figure) -> None:
@@ -101,26 +90,7 @@ _LEADING = 1.2  # distance from line to line, in units of the type size
 
 
 def put_numbers(measure: TextMeasure, readings: Sequence[Reading], look: Theme, below: float) -> float:
-    """Write numbers as cards in one row, or in several rows on a narrow page; return the height of all cards [pt].
-
-    Parameters
-    ----------
-    readings : sequence of Reading
-        The headline numbers. Without any, nothing is drawn and the height is 0.
-    below : float
-        Distance from the upper end of the page to the cards [pt].
-
-    Examples
-    --------
-    >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> drawing = Figure(figsize=(7.2, 4.5))
-    >>> _ = FigureCanvasAgg(drawing)
-    >>> cape = Reading("CAPE", "2270", "± 30 J/kg", "parcel theory 2290 J/kg", "difference −20 J/kg")
-    >>> 40.0 < put_numbers(TextMeasure(drawing), [cape], THEMES["notes"], 0.0) < 60.0
-    True
-    """
+    """Write numbers as cards in rows, ``below`` the upper end of the page [pt]; return the height of all cards [pt]."""
     width = 72.0 * measure.figure.get_figwidth() - look.text
     columns = max(1, min(len(readings), int(width / (_NARROWEST * look.text))))
     each, large, top = width / columns, _LARGE * look.title, below
@@ -180,32 +150,8 @@ def page(
 ) -> Figure:  # fmt: skip
     """Return a page of panels, with a heading and numbers in large type above them and small type below them.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, whose variables give the labels of the axes.
-    draw : callable
-        The function that draws a panel, see `Draw`.
-    readings : sequence of list of Reading
-        The numbers above the panels.
-    small, heading : str
-        The text of the footer and of the heading; an empty heading takes no space.
-    height : float
-        Height that pictures above the panels take [pt].
-    put : callable, optional
-        The function that draws these pictures, given the page and their distance from its upper end [pt].
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.plot.run_figure import painter
-    >>> from atmosbox.plot.theme import THEMES
-    >>> from atmosbox.scene.panels import Line
-    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
-    >>> drawing = page((panel,), look, dataset, painter([dataset], look), [], "atmosbox", "")
-    >>> [text.get_text() for text in drawing.texts], drawing.axes[0].get_title("left")
-    (['atmosbox'], 'Pressure')
+    The variables of the dataset give the labels of the axes. ``put`` draws pictures above the panels, of this height
+    [pt], given the page and their distance from its upper end [pt].
     """
     with style(look):
         drawing = blank(look.wide if len(panels) > 1 or height else look.narrow, look)
@@ -223,22 +169,7 @@ def page(
 
 
 def blank(size: tuple[float, float], look: Theme) -> Figure:
-    """Return an empty page whose panels make room for the text around them.
-
-    Parameters
-    ----------
-    size : tuple of float
-        Width and height [inch].
-    look : Theme
-        The theme: the size of the type sets the margins.
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> drawing.get_size_inches().tolist()
-    [4.0, 3.0]
-    """
+    """Return an empty page of this size [inch], whose panels make room for the text around them."""
     space = look.text / 144  # inch
     engine = ConstrainedLayoutEngine(w_pad=space, h_pad=space / 1.5, wspace=0.02, hspace=0.03)
     drawing = Figure(figsize=size, layout=engine)
@@ -247,33 +178,7 @@ def blank(size: tuple[float, float], look: Theme) -> Figure:
 
 
 def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw) -> list[Graph]:
-    """Draw every panel at its place on the page.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, whose variables give the labels of the axes.
-    draw : callable
-        The function that draws a panel, see `Draw`.
-
-    Returns
-    -------
-    list of Graph
-        The panels on the page; `settle` writes the text around them.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.plot.run_figure import painter
-    >>> from atmosbox.plot.theme import THEMES
-    >>> from atmosbox.scene.panels import Line
-    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
-    >>> page = blank((4.0, 3.0), look)
-    >>> graphs = put_panels(page, (panel, panel), look, dataset, painter([dataset], look))
-    >>> [(graph.row, graph.column) for graph in graphs]
-    [(0, 0), (0, 1)]
-    """
+    """Draw every panel at its place on the page; `settle` writes the text around them."""
     columns = _columns(panels)
     widths = [_WIDTHS[panels[column[0]].kind] for column in columns]
     grid = drawing.add_gridspec(max(map(len, columns)), len(columns), width_ratios=widths)
@@ -291,21 +196,7 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
 
 
 def put_footer(measure: TextMeasure, small: str, look: Theme) -> float:
-    """Write the small type below all panels; return the height that it takes [pt].
-
-    Parameters
-    ----------
-    small : str
-        The text.
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> _ = put_footer(TextMeasure(drawing), "atmosbox", THEMES["notes"])
-    >>> [text.get_text() for text in drawing.texts]
-    ['atmosbox']
-    """
+    """Write the small type below all panels; return the height that it takes [pt]."""
     width = 72 * measure.figure.get_figwidth()
     # Type that is fitted to the pixels of a screen may be narrower than in print.
     small = measure.wrap(small, 0.98 * (width - look.text), look.small)
@@ -314,21 +205,7 @@ def put_footer(measure: TextMeasure, small: str, look: Theme) -> float:
 
 
 def put_heading(measure: TextMeasure, heading: str, size: float, look: Theme, share: float = 1.0) -> float:
-    """Write a heading at the top of a page, over a share of its width; return the height that it takes [pt].
-
-    Parameters
-    ----------
-    heading : str
-        The text; an empty one takes no space.
-    size : float
-        The size of its type [pt].
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> put_heading(TextMeasure(blank((4.0, 3.0), THEMES["notes"])), "", 12.0, THEMES["notes"])
-    0.0
-    """
+    """Write a heading at the top of a page, over a share of its width; return the height that it takes [pt]."""
     if not heading:
         return 0.0
     heading = measure.wrap(heading, share * 72 * measure.figure.get_figwidth() - look.text, size, "bold")
@@ -339,25 +216,7 @@ def put_heading(measure: TextMeasure, heading: str, size: float, look: Theme, sh
 def settle(measure: TextMeasure, graphs: list[Graph], look: Theme, top: float = 0.0) -> None:
     """Write titles, notes, legends and labels around the panels, in lines that are as long as a panel is wide.
 
-    Parameters
-    ----------
-    graphs : list of Graph
-        Its panels, from `put_panels`.
-    top : float
-        Height above all panels that is already in use [pt].
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.plot.run_figure import painter
-    >>> from atmosbox.plot.theme import THEMES
-    >>> from atmosbox.scene.panels import Line
-    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),), y_label="height"), THEMES["notes"]
-    >>> drawing = blank((4.0, 3.0), look)
-    >>> settle(TextMeasure(drawing), put_panels(drawing, (panel,), look, dataset, painter([dataset], look)), look)
-    >>> drawing.axes[0].get_ylabel()
-    'height'
+    ``top`` is the height above all panels that is already in use [pt].
     """
     drawing = measure.figure
     engine, height = drawing.get_layout_engine(), drawing.get_figheight()

@@ -26,20 +26,14 @@ from atmosbox.scene.panels import Line, Panel, from_json
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
-    """Draw the figure of a run.
+    """Draw the figure of a run; it opens no window, and a notebook shows it.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        The run as atmosbox returns or saves it, in SI units; it is not changed. Its attribute
-        ``atmosbox_panels`` lists the panels to draw.
+        The run as atmosbox returns or saves it, in SI units. Its attribute ``atmosbox_panels`` lists the panels.
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen of 16:9 with large type.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure. It opens no window; a notebook shows it.
 
     Raises
     ------
@@ -76,24 +70,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
 
 
 def painter(runs: Sequence[xr.Dataset], look: Theme, curves: Curves | None = None) -> Draw:
-    """Return the function that draws a panel at its place.
-
-    Parameters
-    ----------
-    runs : sequence of xarray.Dataset
-        The run, or the runs that are compared.
-    curves : callable, optional
-        The function that draws the curves of several runs.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
-    >>> drawing, panel = Figure(), Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa")
-    >>> axes, _ = painter([dataset], find("notes"))(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
-    >>> axes.lines[0].get_xdata().tolist()
-    [1000.0, 900.0]
-    """
+    """Return the function that draws a panel of one run, or of several whose curves the function ``curves`` draws."""
     several = curves or partial(draw_lines, runs[0])
 
     def draw_panel(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
@@ -106,21 +83,7 @@ def painter(runs: Sequence[xr.Dataset], look: Theme, curves: Curves | None = Non
 
 
 def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
-    """Return the text of the footer that explains error bars, hollow points and the background of a skew-T.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-    panels : tuple of Panel
-        The panels that are drawn.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> explanation(xr.Dataset(), (Panel("discs", "The box"),))
-    ''
-    """
+    """Return the text of the footer that explains error bars, hollow points and the background of a skew-T."""
     has_errors = any(line.error for panel in panels for line in panel.lines)
     has_hollow = any(
         hollow_points(curve(dataset, panel, line)).any()
@@ -140,23 +103,6 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     """Return the panels that a run lists, without the theory curves of headlines that it did not measure.
 
     Of a run that was stopped, only panels and curves are returned for which it has measured enough.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Raises
-    ------
-    FileError
-        If the dataset lists no panels, its list cannot be read, or the run was stopped too early for all of them.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import to_json
-    >>> [panel.title for panel in panels_of(xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])}))]
-    ['A box']
     """
     if "atmosbox_panels" not in dataset.attrs:
         raise FileError("The file does not say what its figure shows: atmosbox did not write it.")
@@ -218,24 +164,12 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen of 16:9 with large type.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
     Raises
     ------
     FileError
         If the file holds no molecules, no panels, or lacks a variable that they show.
     SettingError
         If there is no such theme.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> figure_with_box(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "lifting-dry"}'}))
-    Traceback (most recent call last):
-    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("lifting-dry", save_molecules=True).
     """
     look, held = find(theme), molecules(dataset)
     panels = tuple(panel for panel in panels_of(dataset) if panel.kind != "discs")

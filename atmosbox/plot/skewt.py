@@ -37,23 +37,9 @@ _LEVEL = "level"  # marks the names of levels among the texts of the axes
 
 
 def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
-    """Choose the range of temperatures of a skew-T for its size, and move the names of its levels apart.
+    """Choose the range of temperatures of a skew-T for its size [pt], and move the names of its levels apart.
 
-    Isotherms are inclined on the page. How far a curve reaches to the left and to the right therefore depends on the
-    height and the width of the axes.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes, from `skewt.draw_skewt`.
-    width, height : float
-        Size of the axes [pt].
-    size : float
-        Size of the type [pt].
-
-    Examples
-    --------
-    Because isotherms are inclined, a curve that cools by 80 K needs less than 80 K of the width of the page:
+    Isotherms are inclined on the page: a curve that cools by 80 K needs less than 80 K of its width.
 
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
@@ -96,24 +82,7 @@ def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[
 
 
 def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
-    """Draw a horizontal line across a skew-T for each level, with its name to the right of the diagram.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes, with their pressures set.
-    levels : dict of str to float
-        Pressure of each level by its name [hPa]; levels outside the diagram are left out.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from atmosbox.plot.theme import THEMES
-    >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
-    >>> put_levels(axes, {"EL": 200.0, "LCL": 900.0, "LFC": 50.0}, THEMES["notes"])
-    >>> [text.get_text() for text in axes.texts]
-    ['LCL', 'EL']
-    """
+    """Draw a line across a skew-T at the pressure of each level [hPa] inside it, with its name to the right."""
     bottom, top = axes.get_ylim()
     line: dict[str, Any] = {"color": FAINT, "linewidth": 0.06 * theme.text}
     for name, pressure in sorted(levels.items(), key=lambda level: -level[1]):
@@ -129,28 +98,7 @@ def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
 def shade_energy(
     skewed: Any, panel: Panel, dataset: xr.Dataset, marks: Mapping[str, float], order: float
 ) -> list[Entry]:
-    """Shade CAPE and CIN, and return their legend entries; without a level of free convection there are none.
-
-    Parameters
-    ----------
-    skewed : metpy.plots.SkewT
-        The diagram.
-    panel : Panel
-        The panel: its first line of role ``data`` is the parcel, its first line of role ``environment`` is the
-        environment.
-    marks : mapping of str to float
-        Pressures of the levels LFC and EL [hPa].
-    order : float
-        The drawing order of the areas (matplotlib's ``zorder``).
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import Line
-    >>> panel = Panel("skewt", "A parcel", (Line("temperature", "pressure", "parcel"),), y_unit="hPa", y_scale="log")
-    >>> shade_energy(None, panel, xr.Dataset(), {}, 1.0)
-    []
-    """
+    """Shade CAPE and CIN between the levels LFC and EL [hPa], if there are any, and return their legend entries."""
     roles = {line.role: line for line in reversed(panel.lines)}
     if "LFC" not in marks or not {"data", "environment"} <= set(roles):
         return []
@@ -197,33 +145,7 @@ _HIGHEST_MOIST = 50.0  # upper end of the moist adiabats [hPa]
 
 
 def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
-    """Return the pressures of the levels that a panel marks.
-
-    Parameters
-    ----------
-    panel : Panel
-        The panel; its ``marks`` are names of single numbers in the file.
-
-    Returns
-    -------
-    dict of str to float
-        Pressure of each level by its name [hPa]; levels that the run has not found are left out.
-
-    Raises
-    ------
-    FileError
-        If a mark is not a pressure.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from atmosbox.scene.panels import Line
-    >>> parcel = Line("parcel_temperature", "parcel_pressure", "parcel")
-    >>> panel = Panel("skewt", "Air", (parcel,), marks=("lcl", "lfc", "el"))
-    >>> held = {"lcl": ((), 9e4, {"units": "Pa"}), "lfc": ((), float("nan"), {"units": "Pa"})}
-    >>> levels(xr.Dataset(held), panel)
-    {'LCL': 900.0}
-    """
+    """Return the pressures of the levels that a panel marks by their names [hPa]; NaN in the file means not found."""
     found: dict[str, float] = {}
     for name in panel.marks:
         if name not in dataset.variables or not dataset[name].attrs.get("resolved", True):
@@ -240,40 +162,9 @@ def draw_skewt(
 ) -> tuple[Axes, list[Entry]]:
     """Draw parcels and their environment as a skew-T; CAPE and CIN are shaded for one run alone.
 
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes. `fit_skewt` sets their range of temperatures later.
-    list of tuple
-        The entries of the legend.
-
-    Raises
-    ------
-    FileError
-        If the file lacks a variable of the panel.
-
-    Notes
-    -----
-    The shaded areas lie between the curves of temperature that are drawn. On MetPy's diagram an area is nearly, but
-    not exactly, proportional to an energy, and CAPE and CIN are computed from virtual temperatures. The areas show
-    where these energies come from; the headline numbers give their values.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> from functools import partial
-    >>> from atmosbox.plot.draw import draw_lines
-    >>> from atmosbox.scene.panels import Line
-    >>> from atmosbox.plot.theme import THEMES
-    >>> held = {
-    ...     "t": ("level", np.array([300.0, 280.0, 250.0]), {"units": "K"}),
-    ...     "p": ("level", np.array([1000e2, 700e2, 400e2]), {"units": "Pa"}),
-    ... }
-    >>> figure, dataset = Figure(), xr.Dataset(held)
-    >>> spot, panel = figure.add_gridspec(1, 1)[0, 0], Panel("skewt", "Air", (Line("t", "p", "air"),))
-    >>> axes, entries = draw_skewt(figure, spot, panel, [dataset], THEMES["notes"], partial(draw_lines, dataset))
-    >>> axes.get_yscale(), [round(float(limit)) for limit in axes.get_ylim()], [label for _, label in entries]
-    ('log', [1018, 393], ['air'])
+    The areas lie between the drawn curves of temperature. An area on MetPy's diagram is nearly, but not exactly,
+    proportional to an energy, and CAPE and CIN are computed from virtual temperatures: the areas show where the
+    energies come from, the headline numbers give their values.
     """
     marks, *others = (levels(run, panel) for run in runs)
     with warnings.catch_warnings(action="ignore"):  # a user can do nothing about warnings of MetPy in a new Python
@@ -312,14 +203,7 @@ def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
 
 
 def slender(theme: Theme) -> Theme:
-    """Return a theme with thinner curves for a skew-T, where the curves run close together near the ground.
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> slender(THEMES["notes"]).line < THEMES["notes"].line
-    True
-    """
+    """Return a theme with thinner curves for a skew-T, where the curves run close together near the ground."""
     return replace(theme, line=_SLENDER * theme.line)
 
 

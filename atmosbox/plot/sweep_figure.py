@@ -74,54 +74,16 @@ def _setting(dataset: xr.Dataset, dim: str) -> _Setting:
 
 
 def is_sweep(dataset: xr.Dataset) -> bool:
-    """Tell whether a file holds a sweep.
-
-    Examples
-    --------
-    >>> is_sweep(xr.Dataset())
-    False
-    """
+    """Tell whether a file holds a sweep."""
     return "sweep" in stated(dataset, "atmosbox_parameters", dict)
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
-    """Draw the headlines of a sweep against the settings that were varied.
+    """Draw the first four headlines of a sweep, those with a theory first, against the settings that were varied.
 
     One setting is on the horizontal axis. A second one gives a curve for each of its values, of at most six values.
-    Theory is known only at the points of the sweep; straight lines join these. Vapour pressures at several
-    temperatures are drawn as ln p against 1/T, each with the slope that was measured in the same run.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What `atmosbox sweep` writes.
-    theme : {"notes", "slides"}
-        A figure for a page, or one for a screen.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure, with a panel for each of the first four headlines; those with a theory come first.
-
-    Raises
-    ------
-    FileError
-        If more than two settings were varied, or no run has measured anything.
-    SettingError
-        If there is no such theme.
-
-    Examples
-    --------
-    >>> import json, xarray as xr
-    >>> made = {"dimensions": {"temperature": "temperature"}, "headlines": ["speed"], "members": 4}
-    >>> swept = xr.Dataset(
-    ...     {"speed": ("temperature", [448.0, 468.0], {"units": "m s-1", "long_name": "mean speed"})},
-    ...     {"temperature": ("temperature", [273.15, 298.15], {"units": "K", "display_units": "degC"})},
-    ...     {"atmosbox_parameters": json.dumps({"sweep": made})},
-    ... )
-    >>> axes = figure(swept).axes[0]
-    >>> axes.get_xlabel(), axes.get_ylabel()
-    ('temperature (°C)', 'mean speed (m/s)')
+    Theory is known only at the points of the sweep; straight lines join these. Vapour pressures at several temperatures
+    are drawn as ln p against 1/T, each with the slope that was measured in the same run.
     """
     look = find(theme)
     about = stated(dataset, "atmosbox_parameters", dict)["sweep"]

@@ -45,28 +45,11 @@ PALE = "#c4c4c4"
 
 @dataclass(frozen=True)
 class Theme:
-    """Sizes of one kind of figure; lengths in inches, type and lines in points.
+    """Sizes of one kind of figure.
 
-    Parameters
-    ----------
-    name : str
-        Name of the theme, as users give it.
-    narrow, wide : tuple of float
-        Width and height of a figure with one panel and with several [inch].
-    text, title, small : float
-        Size of the type of axes and legends, of the panels' titles, and of the footer [pt].
-    line, marker : float
-        Width of lines and size of markers [pt].
-    dots_per_inch : float
-        Resolution on a screen.
-    grows : bool
-        Whether the figure becomes higher if there is much text above its panels; a page allows it, a slide does not.
-
-    Examples
-    --------
-    >>> width, height = THEMES["slides"].wide
-    >>> round(width / height, 3) == round(16 / 9, 3)
-    True
+    ``narrow`` and ``wide`` are width and height of a figure with one panel and with several [inch]; the sizes of type,
+    lines and markers are in points, and ``small`` is the type of the footer. A figure that ``grows`` becomes higher if
+    there is much text above its panels: a page allows it, a slide does not.
     """
 
     name: str
@@ -88,51 +71,14 @@ THEMES = {
 
 
 def find(name: str) -> Theme:
-    """Return the theme of a name.
-
-    Parameters
-    ----------
-    name : str
-        "notes" or "slides".
-
-    Returns
-    -------
-    Theme
-        Its sizes.
-
-    Raises
-    ------
-    SettingError
-        If there is no such theme.
-
-    Examples
-    --------
-    >>> find("slides").text > find("notes").text
-    True
-    """
+    """Return the theme of a name, "notes" or "slides"."""
     if name not in THEMES:
         raise SettingError("theme", name, "is not a theme", *either("theme", THEMES))
     return THEMES[name]
 
 
 def style(theme: Theme) -> AbstractContextManager[None]:
-    """Return a context in which matplotlib draws in a theme, whatever the user's own settings are.
-
-    Returns
-    -------
-    context manager
-        Inside the context, matplotlib has its own default settings and those of the theme; afterwards it has the
-        user's settings again.
-
-    Examples
-    --------
-    >>> before = matplotlib.rcParams["font.size"]
-    >>> with style(THEMES["slides"]):
-    ...     matplotlib.rcParams["font.size"]
-    16.0
-    >>> bool(matplotlib.rcParams["font.size"] == before)
-    True
-    """
+    """Return a context in which matplotlib draws in a theme, whatever the user's own settings are."""
     settings: dict[str, Any] = {
         "font.size": theme.text, "axes.titlesize": theme.title, "axes.labelsize": theme.text,
         "legend.fontsize": theme.text, "legend.frameon": False,

@@ -30,24 +30,8 @@ _MANY = 999.0
 def put_ticks(axis: Axis, length: float, size: float, *, pressure: bool = False) -> int:
     """Put as many numbers on an axis as there is room for, and return the power of ten by which they were divided.
 
-    Parameters
-    ----------
-    axis : matplotlib.axis.Axis
-        The axis, with its limits set.
-    length, size : float
-        Length of the axis and size of its type [pt].
-    pressure : bool
-        Whether the axis shows a pressure in hPa. If it is logarithmic, too, its ticks are the mandatory levels of
-        soundings where there is room for them.
-
-    Returns
-    -------
-    int
-        The exponent of the power of ten that belongs into the label of the axis; 0 for none.
-
-    Examples
-    --------
-    Numbers of the order of 1e-15 are written in units of 1e-15:
+    The length of the axis and the size of its type are in points. A logarithmic axis of pressure in hPa has the
+    mandatory levels of soundings as its ticks where there is room for them.
 
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot(ylim=(-3e-15, 2e-15))

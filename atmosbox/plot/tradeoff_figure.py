@@ -34,23 +34,8 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """Draw the error of a single run against its processor time, in the quantity that best shows how engines differ.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What `atmosbox.trade.tradeoff.measured_trade` returns.
-    theme : {"notes", "slides"}
-        A figure for a page, or one for a screen.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure. A mark is the expected error of a single run, filled where most of it is bias and hollow where most
-        of it is chance; the ring is the recommended run.
-
-    Raises
-    ------
-    SettingError
-        If there is no such theme.
+    A mark is the expected error of a single run, filled where most of it is bias and hollow where most of it is chance;
+    the ring is the recommended run.
     """
     look = find(theme)
     look = replace(look, narrow=look.wide)
@@ -172,13 +157,7 @@ def _total(dataset: xr.Dataset) -> NDArray[np.float64]:
 
 
 def limit(unit: str) -> float:
-    """Return the largest error of a recommended run [K, or a share].
-
-    Examples
-    --------
-    >>> limit("K"), limit("1")
-    (0.5, 0.01)
-    """
+    """Return the largest error of a recommended run [K, or a share]."""
     return WANTED.kelvin if unit == "K" else WANTED.share
 
 
