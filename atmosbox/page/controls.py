@@ -23,21 +23,7 @@ _GAUGES = (
 
 
 def gauges(settings: SceneSettings, measured: Collection[str]) -> list[dict[str, Any]]:
-    """Return the gauges of a box, as data for the page.
-
-    Parameters
-    ----------
-    settings
-        The settings; a scene whose temperature is set in kelvin gets a thermometer in kelvin.
-    measured
-        Names of the variables that are measured.
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> [gauge["unit"] for gauge in gauges(prepare("attraction", {}).settings, ["air_temperature"])]
-    ['K']
-    """
+    """Return the gauges for the measured variables; a scene that sets its temperature in kelvin shows kelvin."""
     kelvin = ("temperature", "K") in {(each.name, each.unit) for each in type(settings).describe()}
     found = []
     for name, variables, unit, factor, offset in _GAUGES:
@@ -57,13 +43,7 @@ _STEPS = 200
 
 
 def knob_controls(knobs: Iterable[Knob]) -> list[dict[str, Any]]:
-    """Return the sliders of knobs, as data for the page.
-
-    Examples
-    --------
-    >>> knob_controls([Knob("temperature", "of the walls", "degC", 0.0, 100.0, 25.0, print)])[0]["step"]
-    0.5
-    """
+    """Return the sliders of knobs, as data for the page."""
     found = []
     for knob in knobs:
         told = Parameter(knob.name, knob.unit, knob.value, knob.low, knob.high, None, knob.help, "float")
@@ -74,24 +54,7 @@ def knob_controls(knobs: Iterable[Knob]) -> list[dict[str, Any]]:
 def setting_controls(
     parameters: Iterable[Parameter], values: Mapping[str, Value], without: Iterable[str]
 ) -> list[dict[str, Any]]:
-    """Return the controls of settings, as data for the page: sliders, switches and lists of choices.
-
-    Parameters
-    ----------
-    parameters
-        The settings of the scene; free texts are left out.
-    values
-        Their present values.
-    without
-        Names of other settings that are left out, such as those that have a knob.
-
-    Examples
-    --------
-    >>> spin = Parameter("rotation", "", True, None, None, None, "whether molecules rotate", "bool")
-    >>> (told,) = setting_controls([spin], {"rotation": True}, [])
-    >>> told["kind"], told["label"]
-    ('switch', 'whether molecules rotate')
-    """
+    """Return sliders, switches and choices for settings, without free texts and those named in ``without``."""
     left_out = set(without)
     return [
         _record(told, values[told.name], restarts=True)

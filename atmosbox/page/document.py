@@ -56,7 +56,7 @@ _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 def view_page(
     runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme: str = "auto", language: str = "auto"
 ) -> str:
-    """Return the complete page that shows saved runs.
+    """Return the complete page that shows saved runs; it needs no other file and no network.
 
     Parameters
     ----------
@@ -69,11 +69,6 @@ def view_page(
         Colours of the page; ``auto`` takes those that the reader's system prefers.
     language : {"auto", "en", "de", "es"}
         Language of the page; ``auto`` takes the first language of the reader's browser that the page has.
-
-    Returns
-    -------
-    str
-        The HTML, which needs no other file and no network.
 
     Examples
     --------
@@ -97,7 +92,7 @@ def lab_page(
     language: str = "auto",
     served: bool = False,
 ) -> str:
-    """Return the complete page in which a box runs.
+    """Return the complete page in which a box runs; it needs no other file and no network.
 
     Parameters
     ----------
@@ -107,22 +102,10 @@ def lab_page(
         For each start that the page offers its label, and the number of bytes of its plan and of its memory.
     module, stored : str
         The engine, and the plans and memories of all starts (see `atmosbox.lab`), both compressed and in base64.
-    theme : {"auto", "light", "dark"}
-        Colours of the page.
-    language : {"auto", "en", "de", "es"}
-        Language of the page.
+    theme, language : str
+        As for `view_page`.
     served : bool
         Whether the page may ask the server that it comes from for plans of boxes with other settings, at ``/plan``.
-
-    Returns
-    -------
-    str
-        The HTML, which needs no other file and no network.
-
-    Examples
-    --------
-    >>> "WebAssembly" in lab_page({"title": "Air"}, [["20", 5, 9]], "AA==", "AA==")
-    True
     """
     engine = "\n".join(_text("web", name) for name in ("lab_machine.js", "lab_worker.js"))
     data = [
@@ -137,24 +120,12 @@ def lab_page(
 
 @functools.cache
 def words(language: str) -> dict[str, Any]:
-    """Return the texts of the page in a language: see ``language/en.toml``.
-
-    Examples
-    --------
-    >>> words("de")["page"]["pause"]
-    'anhalten'
-    """
+    """Return the texts of the page in a language: see ``language/en.toml``."""
     return tomllib.loads(_text("language", f"{language}.toml"))
 
 
 def phrase(language: str, text: str) -> str:
-    """Return an English text of a scene or of a worksheet in a language; a text that its table has not, unchanged.
-
-    Examples
-    --------
-    >>> phrase("de", "How cold does rising air become?"), phrase("de", "argon")
-    ('Wie kalt wird aufsteigende Luft?', 'argon')
-    """
+    """Return an English text of a scene or of a worksheet in a language; unchanged where there is no translation."""
     plain, told = text.replace("\u00a0", " "), words(language)
     return str((told.get("phrase", {}) | told.get("sheet", {})).get(plain, text))
 

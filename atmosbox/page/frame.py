@@ -24,7 +24,7 @@ Floats = NDArray[np.floating]
 def encode(
     sequence: int, time: float, length: Floats, position: Floats, speed: Floats, highest: float, drops: Floats
 ) -> bytes:
-    r"""Return a frame as the bytes that the page reads.
+    """Return a frame as the bytes that the page reads.
 
     Little endian: the number of the frame (uint32), the time (float64), the three sides of the box (float32), the
     number n of molecules (uint32), the highest speed (float32), the positions divided by the sides (3 n uint16), the
@@ -32,33 +32,8 @@ def encode(
     number m of drops (uint32), and the position and the radius of each drop (4 m float32). Quotients from 0 to 1 are
     scaled to the full range of their integer type.
 
-    Parameters
-    ----------
-    sequence : int
-        The number of the frame.
-    time : float
-        The time, in the unit of the stage.
-    length : (axis,)
-        Sides of the box in this frame.
-    position : (molecule, axis)
-        Positions of the molecules, in the unit of `length`; NaN for a molecule in the liquid.
-    speed : (molecule,)
-        Speeds of the molecules; NaN for a molecule in the liquid.
-    highest : float
-        The speed at the top of the scale, in the unit of `speed`; faster molecules have the same colour.
-    drops : (drop, 4)
-        Position and radius of each drop, in the unit of `length`.
-
-    Returns
-    -------
-    bytes
-        The frame.
-
-    Examples
-    --------
-    >>> one = encode(7, 0.5, np.ones(3), np.full((1, 3), 0.5), np.array([300.0]), 900.0, np.zeros((0, 4)))
-    >>> len(one), one[:4]
-    (44, b'\x07\x00\x00\x00')
+    ``length`` (axis,), ``position`` (molecule, axis) and ``drops`` (drop, 4) have one unit, ``speed`` (molecule,) and
+    ``highest`` another; a molecule in the liquid has NaN. Molecules faster than ``highest`` have its colour.
     """
     absent = ~np.isfinite(speed) | ~np.isfinite(position).all(axis=1)
     share = np.where(absent[:, None], 0.0, position / np.asarray(length, np.float64))
@@ -78,23 +53,7 @@ def encode(
 
 
 def pack(frames: Iterable[bytes]) -> str:
-    """Return frames as text for an HTML page: compressed (zlib), and in base64.
-
-    Parameters
-    ----------
-    frames : iterable of bytes
-        What `encode` returned, in order.
-
-    Returns
-    -------
-    str
-        The text; the same frames always give the same text.
-
-    Examples
-    --------
-    >>> zlib.decompress(base64.b64decode(pack([b"one", b"two"])))
-    b'onetwo'
-    """
+    """Return frames as text for an HTML page: compressed (zlib), and in base64; the same frames give the same text."""
     squeeze = zlib.compressobj(9)
     parts = [squeeze.compress(frame) for frame in frames]
     return base64.b64encode(b"".join((*parts, squeeze.flush()))).decode("ascii")
@@ -110,26 +69,11 @@ POOL, RAIN = -1.0, -2.0
 
 
 def clumps(number: int, water: int, length: Floats, diameter: float) -> Floats:
-    """Return the clumps of a mist, all of one size, at places that are fixed shares of the box.
+    """Return the clumps of a mist, (clump, 4): positions, at fixed shares of the sides of the box, and a common radius.
 
-    Parameters
-    ----------
-    number : int
-        Number of molecules in the mist in this frame.
-    water : int
-        Number of molecules of water in the run.
-    length : (axis,)
-        Sides of the box in this frame.
-    diameter : float
-        Diameter with which a molecule of water is drawn, in the unit of `length`.
+    The volume of all clumps together is proportional to the number of molecules in the mist, of ``water`` in the run.
+    ``diameter`` is that of a drawn molecule, in the unit of ``length``.
 
-    Returns
-    -------
-    ndarray of float, (clump, 4)
-        Positions and radii; the volume of all clumps together is proportional to the number of molecules.
-
-    Examples
-    --------
     >>> few, many = (clumps(number, 120, np.ones(3), 0.01) for number in (20, 120))
     >>> len(few), len(many), round(float((many[0, 3] / few[0, 3]) ** 3), 9)
     (20, 40, 3.0)
@@ -143,40 +87,15 @@ def clumps(number: int, water: int, length: Floats, diameter: float) -> Floats:
 
 
 def places(water: int) -> Floats:
-    """Return the places of the clumps for a number of molecules of water, as shares of the box.
-
-    If fewer molecules have condensed than there are places, only the first places are used.
-
-    Examples
-    --------
-    >>> places(4).round(2).tolist()
-    [[0.5, 0.36, 0.25], [0.29, 0.64, 0.42]]
-    """
+    """Return the places of the clumps as shares of the box; a mist of fewer molecules uses the first places."""
     count = int(np.clip(round(water / _A_CLUMP), 1, _MOST))
     return _MARGIN + (1.0 - 2.0 * _MARGIN) * np.stack([_spread(count, base) for base in (2, 3, 5)], axis=1)
 
 
 def layer(number: int, water: int, *, rain: bool = False) -> Floats:
-    """Return the layer of liquid on the floor, as a drop whose negative radius tells its kind, `POOL` or `RAIN`.
+    """Return the liquid on the floor as a drop, (1, 4), or (0, 4) without any: its level from 0 to 1 stands for z.
 
-    Parameters
-    ----------
-    number : int
-        Number of molecules in the layer.
-    water : int
-        Number of molecules of water in the run.
-    rain : bool
-        Whether the layer is fallen rain and not a pool.
-
-    Returns
-    -------
-    ndarray of float, (1, 4) or (0, 4)
-        Its level, from 0 to 1, in the third column.
-
-    Examples
-    --------
-    >>> layer(50, 200).tolist(), layer(0, 200).size
-    ([[0.0, 0.0, 0.25, -1.0]], 0)
+    A negative radius tells whether it is a `POOL` or fallen `RAIN`.
     """
     if number <= 0 or water <= 0:
         return np.zeros((0, 4))

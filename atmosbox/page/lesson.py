@@ -53,15 +53,7 @@ _MAY = {"predict": {"draw"}}
 
 @dataclass(frozen=True)
 class Preset:
-    """Settings with a name.
-
-    Parameters
-    ----------
-    title
-        Their name.
-    values
-        The settings that differ from the defaults of the scene.
-    """
+    """Settings with a name: ``values`` that differ from the defaults of the scene."""
 
     title: str
     values: Mapping[str, Any]
@@ -69,17 +61,10 @@ class Preset:
 
 @dataclass(frozen=True)
 class Lesson:
-    """What a scene offers a class.
+    """What a scene offers a class, as data for the page.
 
-    Parameters
-    ----------
-    story
-        Two sentences on what it shows.
-    predict, task
-        As data for the page: the question with its choices and the ranges of ``draw`` in SI, the task with the values
-        to reach and their tolerances.
-    presets
-        Settings to try.
+    ``predict`` is the question with its choices and the ranges of ``draw`` in SI, ``task`` has the values to reach and
+    their tolerances.
     """
 
     story: str = ""
@@ -89,26 +74,7 @@ class Lesson:
 
 
 def lesson_of(module: ModuleType) -> Lesson:
-    """Return the lesson of a scene; an empty one if there is no such file beside the scene.
-
-    Parameters
-    ----------
-    module
-        The scene, from `atmosbox.scenarios.load`.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read.
-    ConfigError
-        If it is not TOML, or contains something that a lesson must not.
-
-    Examples
-    --------
-    >>> from atmosbox import scenarios
-    >>> lesson_of(scenarios.load("lifting-dry")).task["frames"]
-    8
-    """
+    """Return the lesson of a scene; an empty one if there is no such file beside the scene."""
     path = Path(str(getattr(module, "__file__", ""))).with_suffix(SUFFIX)
     if not path.is_file():
         return Lesson()

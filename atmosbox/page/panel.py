@@ -19,25 +19,7 @@ class Meaning(NamedTuple):
 
 
 def declared(name: str, time_unit: str = "ns") -> Meaning:
-    """Return the meaning of a variable from its declaration.
-
-    Parameters
-    ----------
-    name : str
-        Name of the variable; "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at a label.
-    time_unit : str
-        The unit of the elapsed time.
-
-    Returns
-    -------
-    Meaning
-        Unit and description; for an undeclared name "1" and the name itself.
-
-    Examples
-    --------
-    >>> declared("air_pressure"), declared("elapsed_time", "ps").unit
-    (Meaning(unit='Pa', words='pressure of the air on the walls'), 'ps')
-    """
+    """Return the declared meaning of a variable or of a part such as "heat_from_wall[z_low]"; else its name."""
     name = name.partition("[")[0]
     if name == "elapsed_time":
         return Meaning(time_unit, "time")
@@ -46,23 +28,7 @@ def declared(name: str, time_unit: str = "ns") -> Meaning:
 
 
 def names(panels: Iterable[Panel]) -> tuple[str, ...]:
-    """Return the variables that the graphs of the page need, each once.
-
-    Parameters
-    ----------
-    panels : iterable of Panel
-        The panels of the scene. One of the kind ``discs`` needs no variables, because the stage shows the discs.
-
-    Returns
-    -------
-    tuple of str
-        Names, in order.
-
-    Examples
-    --------
-    >>> names([Panel("line", "Air", (Line("elapsed_time", "air_pressure", "walls"),)), Panel("discs", "The box")])
-    ('elapsed_time', 'air_pressure')
-    """
+    """Return the variables that the graphs of the page need, each once, in order; the stage shows the discs."""
     graphs = [panel for panel in panels if panel.kind != "discs"]
     wanted = [name for panel in graphs for name in panel.variables]
     if any(panel.kind == "atmosphere" for panel in graphs):
@@ -77,35 +43,13 @@ def panel_record(
     sentences: Sequence[str] = (),
     marks: dict[str, float] | None = None,
 ) -> dict[str, Any]:
-    """Return a panel as data for the page.
+    """Return a panel, with its headline numbers as sentences and the levels that it marks [hPa], as data for the page.
 
-    Parameters
-    ----------
-    panel : Panel
-        The panel, of any kind but ``discs``.
-    meaning : callable
-        Function that returns the `Meaning` of a variable by its name.
-    sentences : sequence of str
-        The headline numbers of the panel, as sentences.
-    marks : dict of str to float, optional
-        Pressures that a skew-T marks [hPa].
+    The value of a line is shown as ``value * factor + offset``:
 
-    Returns
-    -------
-    dict
-        The panel in types that JSON can hold. A value of a line is shown as ``value * factor + offset``.
-
-    Raises
-    ------
-    FileError
-        If the unit of a variable cannot be converted to that of the panel.
-
-    Examples
-    --------
     >>> air = Line("elapsed_time", "air_temperature", "air")
-    >>> record = panel_record(Panel("line", "Temperature", (air,), y_unit="degC"), declared)
-    >>> record["y"]["unit"], record["lines"][0]["y"]
-    ('°C', {'name': 'air_temperature', 'factor': 1.0, 'offset': -273.15})
+    >>> panel_record(Panel("line", "Temperature", (air,), y_unit="degC"), declared)["lines"][0]["y"]
+    {'name': 'air_temperature', 'factor': 1.0, 'offset': -273.15}
     """
     from atmosbox.plot.curve import spelled
 

@@ -39,31 +39,7 @@ class Page(NamedTuple):
 
 
 def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
-    """Return the data of the page of one or several runs.
-
-    Parameters
-    ----------
-    runs : sequence of xarray.Dataset
-        The runs, with their molecules. If there are several, the heading of each names what differs.
-
-    Returns
-    -------
-    list of Page
-        The data of each run.
-
-    Raises
-    ------
-    FileError
-        If a run holds no molecules or no frames, if the runs have different units of time, or if colours show
-        neighbours in one run and speeds in another.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> pages([xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "temperature"}'})])
-    Traceback (most recent call last):
-    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("temperature", save_molecules=True).
-    """
+    """Return the data of the page of one or several runs; of several, the heading of each names what differs."""
     headings = changed(runs) if len(runs) > 1 else [""]
     every = [molecules(run) for run in runs]
     units = {str(run["elapsed_time"].attrs.get("units", "ns")) for run in runs}
@@ -212,7 +188,7 @@ def save(
     language: str = "auto",
     force: bool = False,
 ) -> Path:
-    """Write the page that shows a run, or two side by side.
+    """Write the page that shows a run, or two side by side; the same runs give the same bytes.
 
     Parameters
     ----------
@@ -239,10 +215,6 @@ def save(
     SettingError
         If the theme or the language is unknown.
 
-    Notes
-    -----
-    The page contains neither a date nor a random number: the same runs give the same bytes.
-
     Examples
     --------
     >>> import xarray as xr
@@ -258,15 +230,7 @@ def save(
 
 
 def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto", language: str = "auto") -> str:
-    """Return the HTML of the page that `save` writes.
-
-    Raises
-    ------
-    FileError
-        If a run holds no molecules.
-    SettingError
-        If the theme or the language is unknown.
-    """
+    """Return the HTML of the page that `save` writes."""
     from atmosbox.page.saved_run import pages
 
     check_choice("theme", theme, THEMES)
@@ -277,12 +241,6 @@ def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto", language: str 
 
 
 def check_choice(name: str, value: str, known: Sequence[str]) -> None:
-    """Refuse a theme or a language that does not exist.
-
-    Raises
-    ------
-    SettingError
-        If the value is not one of the known ones.
-    """
+    """Refuse a theme or a language that does not exist."""
     if value not in known:
         raise SettingError(name, value, "is unknown", f"give {', '.join(known[:-1])} or {known[-1]}")

@@ -33,23 +33,10 @@ class Share(NamedTuple):
 
 
 def share(molecules: int, frames: int, runs: int = 1) -> Share:
-    """Return how many molecules and frames of a run fit into a page.
+    """Return how many molecules and frames of a run fit into a page, which may show several runs.
 
-    Parameters
-    ----------
-    molecules, frames : int
-        Numbers of molecules and frames of the run.
-    runs : int
-        Number of runs on the page.
+    First, molecules beyond `MOST` are left out, then frames, down to 240, then more molecules:
 
-    Returns
-    -------
-    Share
-        The numbers that are kept. First, molecules beyond `MOST` are left out, then frames, down to 240, then more
-        molecules.
-
-    Examples
-    --------
     >>> share(800, 400), share(10_000, 240), share(200, 100_000)
     (Share(molecules=800, frames=400), Share(molecules=3541, frames=240), Share(molecules=200, frames=4250))
     """
@@ -59,26 +46,9 @@ def share(molecules: int, frames: int, runs: int = 1) -> Share:
 
 
 def chosen(count: int, most: int, water: NDArray[np.bool_] | None = None) -> Indices:
-    """Return which molecules are drawn, evenly spaced in the list of all molecules.
+    """Return the indices of the ``most`` molecules to draw, evenly spaced in the list of all.
 
-    Parameters
-    ----------
-    count : int
-        Number of molecules.
-    most : int
-        Greatest number of molecules that are drawn.
-    water : (molecule,), optional
-        Whether each molecule is water. All molecules of water are drawn if they are at most half of ``most``.
-
-    Returns
-    -------
-    ndarray of int
-        Indices of the molecules that are drawn, in ascending order.
-
-    Examples
-    --------
-    >>> chosen(6, 3).tolist(), chosen(6, 3, np.arange(6) == 5).tolist()
-    ([0, 2, 5], [0, 4, 5])
+    All molecules of water are drawn if they are at most half of ``most``.
     """
     if count <= most:
         return np.arange(count)
@@ -116,15 +86,8 @@ class Box:
         Temperature of each wall [K]; None for a wall without one.
     planar : bool
         Whether the molecules do not move along y.
-    gravity : bool
-        Whether there is gravity.
     reach : float, optional
         Greatest height of the ceiling during the run [m], if it is known.
-
-    Examples
-    --------
-    >>> Box(length=(2e-8, 2e-8, 3e-8)).unit
-    'nm'
     """
 
     length: tuple[float, float, float]
@@ -160,22 +123,7 @@ class Box:
 
 
 def page_box(seen: Molecules) -> Box:
-    """Return the box of a saved run.
-
-    Parameters
-    ----------
-    seen : Molecules
-        The molecules of the run and their box.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> none = np.zeros((1, 0))
-    >>> sides, unknown = np.array([[2e-8, 2e-8, 3e-8]]), np.full((1, 6), np.nan)
-    >>> air = Molecules(False, none, none, none, none, none, None, sides, ("specular",) * 6, unknown, False, False)
-    >>> page_box(air).length
-    (2e-08, 2e-08, 3e-08)
-    """
+    """Return the box of a saved run."""
     x, y, z = (float(side) for side in seen.side[0])
     warm = tuple(float(value) if math.isfinite(value) else None for value in seen.wall_temperature[0])
     reach = None if seen.discs else float(seen.side[:, 2].max())
@@ -183,44 +131,14 @@ def page_box(seen: Molecules) -> Box:
 
 
 def length_unit(length: float) -> str:
-    """Return the unit in which a length is shown.
-
-    Parameters
-    ----------
-    length : float
-        The length [m].
-
-    Returns
-    -------
-    str
-        The largest of nm, µm, mm, m and km that is not longer than the length; nm for shorter lengths.
-
-    Examples
-    --------
-    >>> length_unit(2.1e-8), length_unit(1.0), length_unit(25e3)
-    ('nm', 'm', 'km')
-    """
+    """Return the largest of nm, µm, mm, m and km that is not longer than a length [m]; nm for shorter lengths."""
     known = [name for name, size in _UNITS.items() if length >= 0.999 * size]
     return known[-1] if known else "nm"
 
 
 def length_text(length: float, figures: int = 2) -> str:
-    """Return a length as text.
+    """Return a length [m] as text with its unit.
 
-    Parameters
-    ----------
-    length : float
-        The length [m].
-    figures : int
-        Number of significant digits.
-
-    Returns
-    -------
-    str
-        The number and its unit.
-
-    Examples
-    --------
     >>> length_text(6.93e-9), length_text(129.898, 3)
     ('6.9 nm', '130 m')
     """
@@ -232,31 +150,19 @@ Floats = NDArray[np.floating]
 
 _SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
 _CROWD = 800
-_BESIDE_DROPS, _BESIDE_MIST = (
-    0.4,
-    0.6,
-)  # factors on that diameter in a scene with drops or a mist, so that these stand out
+_BESIDE_DROPS, _BESIDE_MIST = 0.4, 0.6  # factors on that diameter beside drops or a mist, so that these stand out
 ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
-_BEND = (
-    0.5  # power of the speed that the colours of discs follow, because most discs are slower than half of the fastest
-)
+_BEND = 0.5  # power of the speed that the colours of discs follow: most are slower than half of the fastest
 NEIGHBOURS = 12.0
 """Upper end of the colour scale where colours show the number of neighbours."""
 _PARTICLES = {False: "molecule", True: "disc"}
 
 
 class Stage(NamedTuple):
-    """The data that the page gets once, and what is needed to make frames for it.
+    """The data that the page gets once, in types that JSON can hold, and what is needed to make frames for it.
 
-    Attributes
-    ----------
-    record : dict
-        The stage in types that JSON can hold.
-    shown : (shown,)
-        Indices of the molecules that are drawn.
-    variables : tuple of str
-        The variables that the graphs need.
+    ``shown`` are the indices of the molecules that are drawn, ``variables`` those that the graphs need.
     """
 
     record: dict[str, Any]
@@ -276,36 +182,12 @@ class Stage(NamedTuple):
         rained: int = 0,
         highest: float | None = None,
     ) -> bytes:
-        """Return one frame as the bytes that the page reads.
+        """Return one frame as the bytes that the page reads, see `atmosbox.page.frame.encode`.
 
-        Parameters
-        ----------
-        sequence : int
-            The number of the frame.
-        time : float
-            The time, in the unit of the stage.
-        length : (axis,)
-            Sides of the box in this frame [m].
-        position, speed : (molecule, axis) and (molecule,)
-            Positions and speeds of all molecules of the run [m, m/s]; NaN for a molecule in the liquid.
-        drops : (drop, 4), optional
-            Positions and radii of drops that the engine follows [m]; rows of NaN are left out.
-        liquid, rained : int
-            Number of molecules in a mist or a pool, and number of molecules that have left as rain.
-        highest : float, optional
-            The speed at the top of the colour scale of this frame [m/s]; by default that of the stage.
-
-        Returns
-        -------
-        bytes
-            See `atmosbox.page.frame.encode`.
-
-        Examples
-        --------
-        >>> box = Box(length=(2e-8, 2e-8, 2e-8))
-        >>> air = stage(scene="air", title="Air", box=box, mass=[4.8e-26], diameter=[3.7e-10], fastest=900.0)
-        >>> len(air.frame(0, 0.5, box.length, [[1e-8, 1e-8, 1e-8]], [470.0]))
-        44
+        ``time`` has the unit of the stage; ``length`` (axis,), ``position`` (molecule, axis) and the positions and
+        radii of ``drops`` (drop, 4) are in m, ``speed`` (molecule,) and ``highest``, the top of the colour scale, in
+        m/s. All molecules of the run are given, with NaN in the liquid; ``liquid`` is the number of those in a mist or
+        a pool, ``rained`` of those that have left as rain.
         """
         metre = self.record["metre"]
         sides = np.asarray(length, np.float64) * metre
@@ -354,10 +236,6 @@ def stage(
 
     Parameters
     ----------
-    scene, title : str
-        Name and title of the scene.
-    box : Box
-        The box at the start.
     mass, diameter : (molecule,)
         Mass and diameter of every molecule of the run [kg, m]; NaN where they are not known.
     fastest : float
@@ -373,8 +251,6 @@ def stage(
         Contents of the caption.
     time_unit : str
         The unit of the times of frames.
-    panels : sequence of Panel
-        The graphs.
     most : int
         Greatest number of molecules that are drawn.
     discs : bool
@@ -384,14 +260,9 @@ def stage(
     meaning : callable, optional
         Function that returns the `Meaning` of a variable; by default that of its declaration.
     sentences : sequence of sequence of str
-        The headline numbers of each panel, as sentences.
+        The headline numbers of each panel.
     marks : mapping of int to dict, optional
         Pressures of the levels that panels mark [hPa], by the number of the panel.
-
-    Returns
-    -------
-    Stage
-        The record, the molecules that are drawn, and the variables of the graphs.
 
     Examples
     --------

@@ -23,20 +23,8 @@ _PARTS = {"Modelled": "modelled", "Prescribed": "prescribed", "Left out": "left_
 
 
 def card_of(text: str) -> dict[str, str]:
-    """Return what the docstring of a scene says of its model, in parts.
+    """Return what the docstring of a scene says of its model, in the parts of `_PARTS` that there are.
 
-    Parameters
-    ----------
-    text : str
-        The docstring.
-
-    Returns
-    -------
-    dict of str
-        Of ``modelled``, ``prescribed``, ``left_out`` and ``exaggerated`` those that there are.
-
-    Examples
-    --------
     >>> card_of("Warmth. Modelled: spheres. Left out: rain, wind.")
     {'modelled': 'Spheres.', 'left_out': 'Rain, wind.'}
     """
@@ -50,47 +38,12 @@ def card_of(text: str) -> dict[str, str]:
 
 
 def story_of(dataset: xr.Dataset) -> str:
-    """Return what a scene is about: its model card up to the word "Modelled".
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, with the attribute ``comment``.
-
-    Returns
-    -------
-    str
-        The sentences.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> story_of(xr.Dataset(attrs={"comment": "What heat is. Modelled: spheres. Left out: the rest."}))
-    'What heat is.'
-    """
+    """Return what a scene is about: its model card up to the word "Modelled"."""
     return str(dataset.attrs.get("comment", "")).partition(" Modelled:")[0].strip()
 
 
 def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
-    """Return the settings of a run as text.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Returns
-    -------
-    list of tuple of str
-        Names and values; the values have units if the scene comes with atmosbox.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> made = '{"scene": "temperature", "settings": {"temperature": 25.0, "seed": 3}}'
-    >>> settings_of(xr.Dataset(attrs={"atmosbox_parameters": made}))
-    [('temperature', '25 °C'), ('seed', '3')]
-    """
+    """Return the settings of a run as text, with their units if the scene comes with atmosbox."""
     made = parameters(dataset)
     units = _units(str(made.get("scene", "")))
     return [
@@ -102,22 +55,7 @@ def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
 def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     """Return a heading for each run that names only what differs between the runs.
 
-    Parameters
-    ----------
-    runs : sequence of xarray.Dataset
-        The runs.
-
-    Returns
-    -------
-    list of str
-        The headings. Runs of different scenes have the titles of their scenes; runs that do not differ are numbered.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> made = '{"scene": "temperature", "engine": "exact", "settings": {"temperature": %s, "seed": 1}}'
-    >>> changed([xr.Dataset(attrs={"atmosbox_parameters": made % value}) for value in ("25.0", "60.0")])
-    ['temperature 25 °C', 'temperature 60 °C']
+    Runs of different scenes have the titles of their scenes; runs that do not differ are numbered.
     """
     made = [parameters(run) for run in runs]
     told = [
@@ -133,57 +71,14 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
 
 
 def footer_of(dataset: xr.Dataset) -> str:
-    """Return the small type under a page: version, scene, molecules, seed, engine.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Returns
-    -------
-    str
-        See `atmosbox.plot.caption.footer`.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> footer_of(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "atmosphere", "version": "1.0"}'}))
-    'atmosbox 1.0 · atmosphere'
-    """
+    """Return the small type under a page: version, scene, molecules, seed, engine."""
     from atmosbox.plot.caption import footer
 
     return footer(dataset)
 
 
 def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str]:
-    """Return sentences on what the picture leaves out or adds.
-
-    Parameters
-    ----------
-    seen : Molecules
-        The run.
-    stage : mapping
-        The record of its stage.
-    frames : int
-        Number of frames that the page holds.
-
-    Returns
-    -------
-    list of str
-        The sentences.
-
-    Examples
-    --------
-    >>> import types, numpy as np
-    >>> seen = types.SimpleNamespace(
-    ...     time=np.arange(2.0), position=np.zeros((2, 4, 3)), side=np.ones((2, 3)), drops=None, liquid=np.zeros(2),
-    ...     rained=np.zeros(2),
-    ... )
-    >>> stage = {"molecules": 4, "molecules_shown": 2, "particle": "molecule", "box": {"walls": ["specular"] * 6}}
-    >>> notes(seen, stage, frames=2)
-    ['2 of the 4 molecules are drawn.']
-    """
+    """Return sentences on what the picture of a run leaves out or adds; ``stage`` is the record of its stage."""
     found = []
     particle, walls = stage["particle"], stage["box"]["walls"]
     if stage["molecules_shown"] < stage["molecules"]:
