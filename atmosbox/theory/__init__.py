@@ -2,7 +2,8 @@
 
 Every function is a closed form, or the solution of one equation, with its source. None of them is used to move a
 molecule. Where an argument is called ``kT`` or ``diameter`` any consistent set of units will do, reduced or SI; where
-it is called ``temperature`` or ``pressure`` of the air, the units are K and Pa.
+it is called ``temperature`` or ``pressure`` of the air, the units are K and Pa. An argument for which a law does not
+hold, such as a negative pressure or gas so dense that it would freeze, raises ``ValueError``.
 
 =================== ============================================================================================
 file                what it computes

@@ -28,25 +28,14 @@ def _depth_in_scale_heights(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gr
 def barometric_pressure(
     height: ArrayLike, surface_pressure: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike
 ) -> FloatArray:
-    r"""Return the pressure of an isothermal atmosphere, :math:`p_0\, e^{-mgz/kT}`.
+    r"""Return the pressure of an isothermal atmosphere, :math:`p_0\, e^{-mgz/kT}`, in the unit of the surface pressure.
 
     Parameters
     ----------
-    height
-        Height above the surface [length].
-    surface_pressure
-        Pressure at the surface [pressure].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2].
-
-    Returns
-    -------
-    ndarray
-        Pressure, in the unit of the surface pressure.
+    height, surface_pressure
+        Height above the surface [length], and pressure at the surface [pressure].
+    kT, mass, gravity
+        Temperature as an energy [energy], mass of a molecule [mass], acceleration of gravity [length time^-2].
 
     Examples
     --------
@@ -60,23 +49,12 @@ def barometric_pressure(
 
 
 def column_floor_ratio(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
-    r"""Return the density at the floor of a closed column over its mean density, :math:`a / (1 - e^{-a})`.
+    """Return the density at the floor of a closed column over its mean density, :math:`a / (1 - e^{-a})`.
 
     Parameters
     ----------
-    depth
-        Depth H of the column [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2]; zero is allowed.
-
-    Returns
-    -------
-    ndarray
-        Density at the floor over mean density [1].
+    depth, kT, mass, gravity
+        As for :func:`column_mean_height`.
 
     Examples
     --------
@@ -88,23 +66,16 @@ def column_floor_ratio(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity
 
 
 def column_mean_height(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
-    r"""Return the mean height of the molecules of a closed column, :math:`H\, [1/a - 1/(e^a - 1)]`.
+    r"""Return the mean height of the molecules of a closed column, :math:`H\, [1/a - 1/(e^a - 1)]` [length].
+
+    The depth of the column in scale heights is :math:`a = m g H / kT`.
 
     Parameters
     ----------
-    depth
-        Depth H of the column [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2]; zero is allowed.
-
-    Returns
-    -------
-    ndarray
-        Mean height above the bottom of the column [length].
+    depth, kT
+        Depth H of the column [length], and temperature as an energy [energy].
+    mass, gravity
+        Mass of a molecule [mass], and acceleration of gravity [length time^-2]; zero is allowed.
 
     Examples
     --------
@@ -123,19 +94,9 @@ def column_mean_height(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity
 
 
 def column_scale_height(mean_height: float, depth: float) -> float:
-    r"""Return the scale height of a closed column whose molecules have a mean height.
+    """Return the scale height kT / m g of a closed column from the mean height of its molecules above the floor.
 
-    Parameters
-    ----------
-    mean_height
-        Mean height of the molecules above the floor [length].
-    depth
-        Depth of the column [length].
-
-    Returns
-    -------
-    float
-        The scale height kT / m g; infinite if the mean height is half the depth or more.
+    It is infinite if the mean height is half the depth or more. All three have the same unit of length.
 
     Examples
     --------
@@ -161,7 +122,7 @@ def barometric_density(
     mass: float,
     gravity: float,
 ) -> FloatArray:
-    r"""Return the number density at each height of a closed isothermal column of ideal gas.
+    """Return the number density at each height of a closed isothermal column of ideal gas [length^-3].
 
     The barometric law, with the constant that gives the column its number of molecules.
 
@@ -173,17 +134,8 @@ def barometric_density(
         Molecules above each unit of area [length^-2].
     bottom, top
         Lowest and highest position of a molecule's centre [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2]; zero is allowed.
-
-    Returns
-    -------
-    ndarray
-        Number density [length^-3].
+    kT, mass, gravity
+        As for :func:`column_mean_height`.
 
     Examples
     --------

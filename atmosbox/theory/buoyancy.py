@@ -1,11 +1,7 @@
-r"""Whether a parcel rises by itself: its buoyancy, and the energy in a sounding.
+"""Whether a parcel rises by itself: its buoyancy, and the energy in a sounding.
 
 Between the levels of a sounding all quantities are taken as linear in the logarithm of pressure, so that crossings and
 integrals are exact. Units are SI.
-
-References
-----------
-Emanuel, K. A. (1994), Atmospheric Convection, chapters 4 and 6.
 """
 
 from typing import NamedTuple
@@ -24,24 +20,12 @@ __all__ = ["Convection", "cape_cin", "parcel_buoyancy"]
 def parcel_buoyancy(
     parcel_virtual_temperature: ArrayLike, virtual_temperature: ArrayLike, gravity: ArrayLike = STANDARD_GRAVITY
 ) -> FloatArray:
-    r"""Return the acceleration of a parcel that is lighter than its environment, :math:`g (T_v' - T_v) / T_v`.
+    r"""Return the acceleration of a parcel that is lighter than its environment, :math:`g (T_v' - T_v) / T_v` [m s^-2].
 
     Parameters
     ----------
-    parcel_virtual_temperature, virtual_temperature
-        Virtual temperature of the parcel and of its environment [K].
-    gravity
-        Acceleration of gravity g [m s^-2].
-
-    Returns
-    -------
-    ndarray
-        Buoyancy, upward where positive [m s^-2].
-
-    Raises
-    ------
-    ValueError
-        If a temperature is not positive.
+    parcel_virtual_temperature, virtual_temperature, gravity
+        Virtual temperature of the parcel and of its environment [K]; acceleration of gravity g [m s^-2].
 
     Examples
     --------
@@ -109,40 +93,25 @@ def cape_cin(
 ) -> Convection:
     r"""Return the energy that buoyancy gives to a rising parcel, and the energy that must be spent before.
 
-    :math:`\mathrm{CAPE} = R_d \int_{EL}^{LFC} (T_v' - T_v)\, d \ln p`, and CIN is the same from the start to the
-    LFC. The LFC is the lowest level, not below the cloud base, from which the parcel is buoyant; the EL is the highest
-    level at which it ceases to be buoyant. Stable layers between the two reduce CAPE.
+    :math:`\mathrm{CAPE} = R_d \int_{EL}^{LFC} (T_v' - T_v)\, d \ln p`, and CIN is the same from the start to the LFC
+    (Emanuel 1994, Atmospheric Convection, chapter 6). The LFC is the lowest level, not below the cloud base, from which
+    the parcel is buoyant; the EL is the highest level at which it ceases to be buoyant. Stable layers between the two
+    reduce CAPE. Without an LFC both energies are 0.0; without an EL, CAPE ends with the sounding.
 
     Parameters
     ----------
     pressure : (level,)
         Pressure, decreasing upward from the parcel's start [Pa].
-    virtual_temperature : (level,)
-        Virtual temperature of the environment [K].
-    parcel_virtual_temperature : (level,)
-        Virtual temperature of the parcel [K].
+    virtual_temperature, parcel_virtual_temperature : (level,)
+        Virtual temperature of the environment and of the parcel [K].
     lcl_pressure
         Pressure of the parcel's cloud base [Pa]; None lets the parcel be free from the start.
-
-    Returns
-    -------
-    Convection
-        CAPE, CIN, LFC and EL. Without an LFC both energies are 0.0; without an EL, CAPE ends with the sounding.
-
-    Raises
-    ------
-    ValueError
-        If the pressures do not decrease, the numbers of levels differ, or a number is not finite and positive.
 
     Notes
     -----
     These are the choices of MetPy's ``cape_cin``, ``which_lfc="bottom"`` and ``which_el="top"``, except for a parcel
     that is buoyant at its cloud base, stable farther up and buoyant again: here the LFC is the cloud base, in MetPy it
     is the upper crossing.
-
-    References
-    ----------
-    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, chapter 6.
 
     Examples
     --------

@@ -27,10 +27,11 @@ def measured_cloud_base(
     covariance: ArrayLike,
     least: float = 0.1,
 ) -> CloudBase | None:
-    r"""Return the pressure above which the water of rising air begins to stay liquid; None if there is no cloud base.
+    """Return the pressure above which the water of rising air begins to stay liquid; None if there is no cloud base.
 
     In a gas of few molecules some are in clusters already in clear air. So the growth of the cloud is extrapolated back
     to its beginning: a parabola in ln p is fitted to the share of the water that has condensed; its zero is the base.
+    There is none if no level is clear, or too few levels lie in the cloud.
 
     Parameters
     ----------
@@ -39,12 +40,7 @@ def measured_cloud_base(
     covariance : (level, level)
         Covariance of the measured vapour at these pressures.
     least
-        Share of all water above which the liquid counts as a cloud and not as clusters [1].
-
-    Returns
-    -------
-    CloudBase or None
-        None if no level is clear, or too few levels lie in the cloud.
+        Share of all water above which the liquid counts as a cloud and not as clusters.
 
     Examples
     --------

@@ -1,10 +1,4 @@
-r"""Liquid and vapour in coexistence at several temperatures: the critical point, and the rise of the vapour pressure.
-
-References
-----------
-.. [1] Rowlinson, J. S., Swinton, F. L. (1982), Liquids and Liquid Mixtures, 3rd edition, sections 2.3 and 3.2
-   (law of Clausius and Clapeyron without approximation; law of rectilinear diameters).
-"""
+"""Liquid and vapour in coexistence at several temperatures: the critical point, and the rise of the vapour pressure."""
 
 from typing import NamedTuple
 
@@ -42,7 +36,8 @@ def critical_point(
     r"""Return the critical point from densities of liquid and vapour in coexistence.
 
     :math:`(\rho_l - \rho_v)^{1/\beta}` falls to zero along a straight line, at T_c; the mean of both densities is
-    another straight line (the law of rectilinear diameters), whose value at T_c is the critical density.
+    another straight line (the law of rectilinear diameters), whose value at T_c is the critical density (Rowlinson and
+    Swinton 1982, Liquids and Liquid Mixtures, section 3.2).
 
     Parameters
     ----------
@@ -77,6 +72,9 @@ def critical_point(
 
 def slope_of_pressure(temperature: ArrayLike, pressure: ArrayLike, pressure_se: ArrayLike) -> tuple[float, float]:
     r"""Return :math:`-\mathrm{d} \ln p / \mathrm{d}(1/T)` from measured vapour pressures, and its standard error.
+
+    By the law of Clausius and Clapeyron it is the latent heat of a molecule over k ΔZ (Rowlinson and Swinton 1982,
+    Liquids and Liquid Mixtures, section 2.3).
 
     Parameters
     ----------

@@ -30,10 +30,8 @@ class Species:
     ----------
     name
         Its name in meteorology.
-    molar_mass
-        Mass of a mole [kg mol-1].
-    molecule_mass
-        Mass of one molecule [kg].
+    molar_mass, molecule_mass
+        Mass of a mole [kg mol-1]; mass of one molecule [kg].
     diameter
         Distance between the centres of two such molecules in contact [m].
     rotational_dof

@@ -26,34 +26,22 @@ _TRACE = 1e-6
 def mutual_diffusivity(
     number_density: float, diameter: float, mass: tuple[float, float], kT: float, *, contact: float = 1.0
 ) -> float:
-    r"""Return the mutual diffusion coefficient of two gases of hard spheres of one diameter, half of each.
+    r"""Return the mutual diffusion coefficient of two gases of hard spheres of one diameter [length^2/time].
 
     .. math:: D = \frac{3}{8 n \sigma^2 g} \sqrt{\frac{kT}{2 \pi \mu}}\, f, \qquad \mu = \frac{m_1 m_2}{m_1 + m_2}
 
     with the whole series of Chapman and Enskog for f, `diffusivity_factor`, and Enskog's contact value g for spheres
-    with excluded volume. For molecules that differ only by a label it is the coefficient of self-diffusion.
+    with excluded volume (Chapman and Cowling 1970, The Mathematical Theory of Non-uniform Gases). For molecules that
+    differ only by a label it is the coefficient of self-diffusion.
 
     Parameters
     ----------
-    number_density
-        Number density of both gases together [1/length^3].
-    diameter
-        Diameter of all molecules [length].
-    mass
-        Mass of a molecule of each gas [mass].
-    kT
-        Temperature [energy].
+    number_density, diameter
+        Number density of both gases together, half of each [1/length^3], and diameter of all molecules [length].
+    mass, kT
+        Mass of a molecule of each gas [mass], and temperature [energy].
     contact
         Contact value g; 1 for a thin gas.
-
-    Returns
-    -------
-    float
-        The coefficient [length^2/time].
-
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases.
 
     Examples
     --------
@@ -77,11 +65,6 @@ def diffusivity_error(mass: tuple[float, float]) -> float:
     ----------
     mass
         Mass of a molecule of each gas [mass].
-
-    Returns
-    -------
-    float
-        Relative error, at least 0 [1].
 
     Examples
     --------
@@ -113,7 +96,7 @@ def mixing_decay_rate(diffusivity: float, length: float) -> float:
 
 
 def mixed_share(edges: ArrayLike, passed: ArrayLike) -> FloatArray:
-    r"""Return the share of the gas that began in the left half, as a mean over each bin.
+    r"""Return the share of the gas that began in the left half, as a mean over each bin, (time, bin) or (bin,).
 
     .. math:: c(x, t) = \frac12 + \sum_{j\ \mathrm{odd}} \frac{2}{j \pi} \sin\frac{j \pi}{2}
               \cos\frac{j \pi x}{L}\, e^{-j^2 \Gamma t}
@@ -124,11 +107,6 @@ def mixed_share(edges: ArrayLike, passed: ArrayLike) -> FloatArray:
         Bounds of the bins, in lengths of the box.
     passed : (time,) or float
         Time times the decay rate of the slowest mode.
-
-    Returns
-    -------
-    array (time, bin) or (bin,)
-        The share.
 
     Examples
     --------
@@ -145,7 +123,7 @@ def mixed_share(edges: ArrayLike, passed: ArrayLike) -> FloatArray:
 
 
 def mixed_share_scatter(bins: int, passed: float) -> FloatArray:
-    r"""Return the variance of the share in a bin over that of independent draws.
+    r"""Return the variance of the share in a bin over that of independent draws, (bin,).
 
     For n molecules drawn at random a share c would have the variance :math:`c (1 - c) / n`. Three effects change it.
     The number of molecules of each gas is exactly half. The molecules of one bin come from the same region, and two
@@ -161,15 +139,8 @@ def mixed_share_scatter(bins: int, passed: float) -> FloatArray:
 
     Parameters
     ----------
-    bins
-        Number of equal parts of the box.
-    passed
-        Time times the decay rate of the slowest mode.
-
-    Returns
-    -------
-    array (bin,)
-        The variance over that of independent draws.
+    bins, passed
+        Number of equal parts of the box, and time times the decay rate of the slowest mode.
 
     Examples
     --------

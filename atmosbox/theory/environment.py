@@ -1,12 +1,8 @@
 r"""The environment of a parcel: an atmosphere at rest of constant lapse rate, and the standard atmosphere.
 
-Hydrostatic balance :math:`dp/dz = -\rho g` with the ideal gas law. Heights are geopotential, gravity does not
-change with height, units are SI. The International Standard Atmosphere has layers of constant lapse rate from the
-ground to 80 km.
-
-References
-----------
-ISO 2533:1975, Standard Atmosphere; ICAO Doc 7488/3 (1993), Manual of the ICAO Standard Atmosphere.
+Hydrostatic balance :math:`dp/dz = -\rho g` with the ideal gas law. Heights are geopotential, gravity does not change
+with height, units are SI. The International Standard Atmosphere (ISO 2533:1975; ICAO Doc 7488/3, 1993) has layers of
+constant lapse rate from the ground to 80 km.
 """
 
 import numpy as np
@@ -29,21 +25,14 @@ DRY_AIR_GAS_CONSTANT: float = GAS_CONSTANT / DRY_AIR.molar_mass
 
 
 def environment_temperature(height: ArrayLike, surface_temperature: ArrayLike, lapse_rate: ArrayLike) -> FloatArray:
-    r"""Return the temperature of air with a constant lapse rate, :math:`T_0 - \Gamma z`.
+    r"""Return the temperature of air with a constant lapse rate, :math:`T_0 - \Gamma z` [K].
 
     Parameters
     ----------
-    height
-        Height above the surface [m].
-    surface_temperature
-        Temperature at the surface [K].
+    height, surface_temperature
+        Height above the surface [m], and temperature at the surface [K].
     lapse_rate
         Fall of the temperature with height [K m^-1]; negative in an inversion.
-
-    Returns
-    -------
-    ndarray
-        Temperature [K].
 
     Raises
     ------
@@ -69,39 +58,26 @@ def environment_pressure(
     gravity: ArrayLike = STANDARD_GRAVITY,
     specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
 ) -> FloatArray:
-    r"""Return the pressure at a height in air with a constant lapse rate.
+    r"""Return the pressure at a height in air with a constant lapse rate [Pa].
 
-    :math:`p_0 (1 - \Gamma z / T_0)^{g / R \Gamma}`. Without a lapse rate it is the barometric law
-    :math:`p_0 e^{-gz/RT_0}`.
+    :math:`p_0 (1 - \Gamma z / T_0)^{g / R \Gamma}` (ISO 2533:1975, Standard Atmosphere). Without a lapse rate it is the
+    barometric law :math:`p_0 e^{-gz/RT_0}`.
 
     Parameters
     ----------
     height
         Height above the surface [m].
-    surface_temperature
-        Temperature at the surface [K].
-    surface_pressure
-        Pressure at the surface [Pa].
+    surface_temperature, surface_pressure
+        Temperature [K] and pressure [Pa] at the surface.
     lapse_rate
         Fall of the temperature with height [K m^-1]; zero and negative are allowed.
-    gravity
-        Acceleration of gravity [m s^-2].
-    specific_gas_constant
-        Gas constant of the air per mass [J kg^-1 K^-1].
-
-    Returns
-    -------
-    ndarray
-        Pressure [Pa].
+    gravity, specific_gas_constant
+        Acceleration of gravity [m s^-2], and gas constant of the air per mass [J kg^-1 K^-1].
 
     Raises
     ------
     ValueError
         If the temperature at a height would not be above absolute zero.
-
-    References
-    ----------
-    .. [1] ISO 2533:1975, Standard Atmosphere.
 
     Examples
     --------
@@ -127,7 +103,7 @@ def height_of_pressure(
     gravity: ArrayLike = STANDARD_GRAVITY,
     specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
 ) -> FloatArray:
-    r"""Return the height at which air with a constant lapse rate has a pressure.
+    """Return the height at which air with a constant lapse rate has a pressure [m].
 
     The inverse of :func:`environment_pressure`.
 
@@ -135,25 +111,8 @@ def height_of_pressure(
     ----------
     pressure
         Pressure [Pa], above zero.
-    surface_temperature
-        Temperature at the surface [K].
-    surface_pressure
-        Pressure at the surface [Pa].
-    lapse_rate
-        Fall of the temperature with height [K m^-1]; zero and negative are allowed.
-    gravity
-        Acceleration of gravity [m s^-2].
-    specific_gas_constant
-        Gas constant of the air per mass [J kg^-1 K^-1].
-
-    Returns
-    -------
-    ndarray
-        Height above the surface [m].
-
-    References
-    ----------
-    .. [1] ISO 2533:1975, Standard Atmosphere.
+    surface_temperature, surface_pressure, lapse_rate, gravity, specific_gas_constant
+        As for :func:`environment_pressure`.
 
     Examples
     --------
@@ -196,26 +155,12 @@ def _isa_layer(height: FloatArray) -> NDArray[np.intp]:
 
 
 def isa_temperature(height: ArrayLike) -> FloatArray:
-    r"""Return the temperature of the International Standard Atmosphere.
+    """Return the temperature of the International Standard Atmosphere, ISO 2533:1975 [K].
 
     Parameters
     ----------
     height
         Geopotential height, -2 to 80 km [m].
-
-    Returns
-    -------
-    ndarray
-        Temperature [K].
-
-    Raises
-    ------
-    ValueError
-        If a height lies outside the standard.
-
-    References
-    ----------
-    .. [1] ISO 2533:1975, Standard Atmosphere.
 
     Examples
     --------
@@ -230,30 +175,14 @@ def isa_temperature(height: ArrayLike) -> FloatArray:
 
 
 def isa_pressure(height: ArrayLike) -> FloatArray:
-    r"""Return the pressure of the International Standard Atmosphere.
+    """Return the pressure of the International Standard Atmosphere, ISO 2533:1975 [Pa].
+
+    The standard's own gas constant, 287.05287 J/(kg K), is used, so that its tables are reproduced digit by digit.
 
     Parameters
     ----------
     height
         Geopotential height, -2 to 80 km [m].
-
-    Returns
-    -------
-    ndarray
-        Pressure [Pa].
-
-    Raises
-    ------
-    ValueError
-        If a height lies outside the standard.
-
-    Notes
-    -----
-    The standard's own gas constant, 287.05287 J/(kg K), is used, so that its tables are reproduced digit by digit.
-
-    References
-    ----------
-    .. [1] ISO 2533:1975, Standard Atmosphere.
 
     Examples
     --------

@@ -3,13 +3,6 @@ r"""Spheres and discs with excluded volume: their pressure beside that of an ide
 The packing fraction is the share of the space that spheres fill, :math:`\phi = \pi n \sigma^3 / 6`, or of the area that
 discs cover, :math:`\eta = \pi n \sigma^2 / 4` with n molecules per area. All quantities here depend on it alone, never
 on the temperature, because hard spheres have no energy except that of their motion.
-
-References
-----------
-.. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-.. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B: fitted to molecular dynamics
-   of 0.004 % accuracy at reduced densities up to 1.03, with the virial coefficients B2 to B6 built in.
-.. [3] Henderson, D. (1975), doi:10.1080/00268977500102511 (discs).
 """
 
 from collections.abc import Callable
@@ -85,15 +78,8 @@ def packing_fraction(number_density: ArrayLike, diameter: ArrayLike) -> FloatArr
 
     Parameters
     ----------
-    number_density
-        Molecules per volume [length^-3].
-    diameter
-        Diameter of a molecule [length].
-
-    Returns
-    -------
-    ndarray
-        Packing fraction [1].
+    number_density, diameter
+        Molecules per volume [length^-3], and their diameter [length].
 
     Examples
     --------
@@ -114,25 +100,8 @@ def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatAr
 
     Parameters
     ----------
-    packing_fraction
-        Share of the space filled [1].
-    form
-        Equation of state: ``"kolafa"`` [2]_ or ``"carnahan-starling"`` [1]_.
-
-    Returns
-    -------
-    ndarray
-        Pair distribution at contact [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
-
-    References
-    ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    packing_fraction, form
+        As for :func:`compressibility_factor`.
 
     Examples
     --------
@@ -149,28 +118,17 @@ def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatAr
 def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
     r"""Return the compressibility factor of spheres, their pressure over that of an ideal gas: :math:`Z = P / (n k T)`.
 
+    The series of Kolafa, Labík and Malijevský (2004), doi:10.1039/B402792B, was fitted to molecular dynamics of 0.004 %
+    accuracy at reduced densities up to 1.03, with the virial coefficients B2 to B6 built in. The classic formula of
+    Carnahan and Starling (1969), doi:10.1063/1.1672048, good to 0.3 %, is
+    :math:`Z = (1 + \phi + \phi^2 - \phi^3) / (1 - \phi)^3`.
+
     Parameters
     ----------
     packing_fraction
-        Share of the space filled [1].
+        Share of the space filled, below 0.539, or below 1 for Carnahan and Starling.
     form
-        ``"kolafa"`` [2]_, good to 0.004 %, or the classic ``"carnahan-starling"`` [1]_,
-        :math:`Z = (1 + \phi + \phi^2 - \phi^3) / (1 - \phi)^3`, good to 0.3 %.
-
-    Returns
-    -------
-    ndarray
-        Compressibility factor [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
-
-    References
-    ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+        Equation of state: ``"kolafa"`` or ``"carnahan-starling"``.
 
     Examples
     --------
@@ -183,30 +141,15 @@ def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -
 
 
 def inverse_compressibility(packing_fraction: ArrayLike) -> FloatArray:
-    r"""Return the stiffness of the gas against compression at constant temperature.
+    r"""Return the isothermal stiffness of the gas against compression, :math:`(\partial P / \partial n)_T / kT`.
 
-    :math:`(\partial P / \partial n)_T / kT`, in terms of the compressibility factor
-    :math:`d(\phi Z) / d\phi`; 1 for an ideal gas. Its inverse is the mean square fluctuation of the number of
-    molecules in a large cell, divided by that number.
+    In terms of the compressibility factor it is :math:`d(\phi Z) / d\phi`; 1 for an ideal gas. Its inverse is the mean
+    square fluctuation of the number of molecules in a large cell, divided by that number.
 
     Parameters
     ----------
     packing_fraction
-        Share of the space filled [1].
-
-    Returns
-    -------
-    ndarray
-        Reduced inverse compressibility [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+        Share of the space filled, below 0.539.
 
     Examples
     --------
@@ -220,32 +163,12 @@ def inverse_compressibility(packing_fraction: ArrayLike) -> FloatArray:
 
 
 def gas_pressure(number_density: ArrayLike, kT: ArrayLike, diameter: ArrayLike = 0.0) -> FloatArray:
-    r"""Return the pressure of a gas of hard spheres, :math:`P = n k T Z`.
-
-    Without a diameter it is that of an ideal gas.
+    """Return the pressure of a gas of hard spheres, :math:`P = n k T Z` [energy length^-3].
 
     Parameters
     ----------
-    number_density
-        Molecules per volume [length^-3].
-    kT
-        Temperature as an energy [energy].
-    diameter
-        Diameter of a molecule [length].
-
-    Returns
-    -------
-    ndarray
-        Pressure [energy length^-3].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    number_density, kT, diameter
+        Molecules per volume [length^-3], temperature as an energy [energy], diameter [length], 0 for points.
 
     Examples
     --------
@@ -277,15 +200,8 @@ def packing_fraction_discs(number_density: ArrayLike, diameter: ArrayLike) -> Fl
 
     Parameters
     ----------
-    number_density
-        Molecules per area [length^-2].
-    diameter
-        Diameter of a disc [length].
-
-    Returns
-    -------
-    ndarray
-        Packing fraction [1].
+    number_density, diameter
+        Molecules per area [length^-2], and their diameter [length].
 
     Examples
     --------
@@ -303,21 +219,7 @@ def contact_value_discs(packing_fraction: ArrayLike) -> FloatArray:
     Parameters
     ----------
     packing_fraction
-        Share of the area covered [1].
-
-    Returns
-    -------
-    ndarray
-        Pair distribution at contact [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+        Share of the area covered, below 1.
 
     Examples
     --------
@@ -331,26 +233,12 @@ def contact_value_discs(packing_fraction: ArrayLike) -> FloatArray:
 def compressibility_factor_discs(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the compressibility factor of discs, their pressure over that of points: :math:`Z = P / (n k T)`.
 
-    By Henderson [1]_, :math:`Z = (1 + \eta^2/8) / (1 - \eta)^2`.
+    By Henderson (1975), doi:10.1080/00268977500102511, :math:`Z = (1 + \eta^2/8) / (1 - \eta)^2`.
 
     Parameters
     ----------
     packing_fraction
-        Share of the area covered [1].
-
-    Returns
-    -------
-    ndarray
-        Compressibility factor [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+        Share of the area covered, below 1.
 
     Examples
     --------
@@ -363,27 +251,13 @@ def compressibility_factor_discs(packing_fraction: ArrayLike) -> FloatArray:
 def inverse_compressibility_discs(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the stiffness of a plane gas against compression at constant temperature, :math:`d(\eta Z) / d\eta`.
 
-    It is :math:`(\partial P / \partial n)_T / kT = (1 + \eta + 3\eta^2/8 - \eta^3/8) / (1 - \eta)^3` [1]_, and 1 for
-    an ideal gas.
+    It is :math:`(\partial P / \partial n)_T / kT = (1 + \eta + 3\eta^2/8 - \eta^3/8) / (1 - \eta)^3`, and 1 for an
+    ideal gas.
 
     Parameters
     ----------
     packing_fraction
-        Share of the area covered [1].
-
-    Returns
-    -------
-    ndarray
-        Reduced inverse compressibility [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+        Share of the area covered, below 1.
 
     Examples
     --------
@@ -397,30 +271,12 @@ def inverse_compressibility_discs(packing_fraction: ArrayLike) -> FloatArray:
 
 
 def gas_pressure_discs(number_density: ArrayLike, kT: ArrayLike, diameter: ArrayLike = 0.0) -> FloatArray:
-    r"""Return the pressure of a gas of discs, a force per length, :math:`P = n k T Z`.
+    """Return the pressure of a gas of discs, a force per length, :math:`P = n k T Z` [energy length^-2].
 
     Parameters
     ----------
-    number_density
-        Molecules per area [length^-2].
-    kT
-        Temperature as an energy [energy].
-    diameter
-        Diameter of a disc [length]; zero for an ideal gas.
-
-    Returns
-    -------
-    ndarray
-        Pressure [energy length^-2].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+    number_density, kT, diameter
+        Discs per area [length^-2], temperature as an energy [energy], diameter [length], 0 for points.
 
     Examples
     --------
@@ -441,32 +297,14 @@ def collision_rate_discs(
     kT: ArrayLike,
     mass: ArrayLike,
 ) -> FloatArray:
-    r"""Return the collision rate of one disc, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}`.
+    r"""Return the collision rate of one disc, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}` [time^-1].
+
+    A gas of N discs has N/2 times as many collisions.
 
     Parameters
     ----------
-    number_density
-        Molecules per area [length^-2].
-    diameter
-        Diameter of a disc [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a disc [mass].
-
-    Returns
-    -------
-    ndarray
-        Collisions per disc and time [time^-1]; a gas of N discs has N/2 times as many.
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+    number_density, diameter, kT, mass
+        Discs per area [length^-2], diameter [length], temperature as an energy [energy], mass of a disc [mass].
 
     Examples
     --------
@@ -488,32 +326,14 @@ _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 def excess_free_energy(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the free energy per molecule, in units of kT, that excluded volume adds to an ideal gas.
 
-    :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`. Hard spheres have no potential energy, so this is also minus
-    the excess entropy per molecule in units of k; the reason is the volume from which each molecule excludes the
-    others.
+    :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`, exact to rounding. Hard spheres have no potential energy, so
+    this is also minus the excess entropy per molecule in units of k; the reason is the volume from which each molecule
+    excludes the others.
 
     Parameters
     ----------
     packing_fraction
-        Share of the space filled [1].
-
-    Returns
-    -------
-    ndarray
-        Excess free energy per molecule over kT [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    Notes
-    -----
-    The integral is a Gauss-Legendre quadrature with 32 points, exact to rounding.
-
-    References
-    ----------
-    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+        Share of the space filled, below 0.539.
 
     Examples
     --------
@@ -526,29 +346,15 @@ def excess_free_energy(packing_fraction: ArrayLike) -> FloatArray:
 
 
 def excess_chemical_potential(packing_fraction: ArrayLike) -> FloatArray:
-    r"""Return the work, in units of kT, of inserting one more molecule.
+    r"""Return the work, in units of kT, of inserting one more molecule, :math:`\mu_{ex} / kT = a(\phi) + Z(\phi) - 1`.
 
-    :math:`\mu_{ex} / kT = a(\phi) + Z(\phi) - 1` with :math:`a` from :func:`excess_free_energy`; the probability that a
-    random place is free for a sphere is :math:`e^{-\mu_{ex}/kT}`.
+    Here :math:`a` is that of :func:`excess_free_energy`. The probability that a random place is free for a sphere is
+    :math:`e^{-\mu_{ex}/kT}`.
 
     Parameters
     ----------
     packing_fraction
-        Share of the space filled [1].
-
-    Returns
-    -------
-    ndarray
-        Excess chemical potential over kT [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+        Share of the space filled, below 0.539.
 
     Examples
     --------
@@ -564,26 +370,11 @@ def excess_free_energy_discs(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the free energy per disc, in units of kT, that excluded volume adds to an ideal plane gas.
 
     :math:`a(\eta) = \int_0^\eta (Z - 1)\, d\eta' / \eta' = \frac{9 \eta}{8 (1 - \eta)} - \frac{7}{8} \ln (1 - \eta)`
-    [1]_, as :func:`excess_free_energy` of spheres.
 
     Parameters
     ----------
     packing_fraction
-        Share of the area covered [1].
-
-    Returns
-    -------
-    ndarray
-        Excess free energy per disc over kT [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+        Share of the area covered, below 1.
 
     Examples
     --------
@@ -601,21 +392,7 @@ def excess_chemical_potential_discs(packing_fraction: ArrayLike) -> FloatArray:
     Parameters
     ----------
     packing_fraction
-        Share of the area covered [1].
-
-    Returns
-    -------
-    ndarray
-        Excess chemical potential over kT [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+        Share of the area covered, below 1.
 
     Examples
     --------
@@ -635,31 +412,15 @@ def hard_sphere_isentrope(packing_fraction: ArrayLike, packing_fraction0: ArrayL
     .. math:: T / T_0 = \left[ (\phi / \phi_0)\, e^{a(\phi) - a(\phi_0)} \right]^{2/f},
               \qquad dT / T = -(2/f)\, Z\, dV / V .
 
-    Parameters
-    ----------
-    packing_fraction, packing_fraction0
-        Share of the space filled, now and at the start [1].
-    dof
-        Degrees of freedom f that share the energy: 3, or 5 with two of rotation, 6 with three [1].
-
-    Returns
-    -------
-    ndarray
-        Temperature over the temperature at the start [1].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    Notes
-    -----
     As a function of pressure the correction to :func:`atmosbox.theory.dry_adiabat_temperature` begins only at second
     order in the packing fraction: the additional work and the higher pressure cancel at first order.
 
-    References
+    Parameters
     ----------
-    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    packing_fraction, packing_fraction0
+        Share of the space filled, now and at the start, below 0.539.
+    dof
+        Degrees of freedom f that share the energy: 3, or 5 with two of rotation, 6 with three.
 
     Examples
     --------

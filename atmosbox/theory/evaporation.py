@@ -47,46 +47,31 @@ def evaporation_equilibrium(
 ) -> EvaporationEquilibrium:
     r"""Return the final state of a pool under air at constant pressure, without heat from outside.
 
-    The enthalpy is constant, :math:`(N_a c_{pd} + N_v c_{pv} + n c_l + C) T - n \varphi`, and :math:`N_v / N_a =
-    e / (p - e)`, where e is :math:`e_s(T)` or, if all of the pool has evaporated, less.
+    The enthalpy is constant, :math:`(N_a c_{pd} + N_v c_{pv} + n c_l + C) T - n \varphi`, and
+    :math:`N_v / N_a = e / (p - e)`, where e is :math:`e_s(T)` or, if all of the pool has evaporated, less. The enthalpy
+    rises with temperature, at saturation including the latent heat, so there is exactly one solution, found to rounding
+    (Bohren and Albrecht 1998, Atmospheric Thermodynamics, chapter 6).
 
     Parameters
     ----------
-    pressure
-        Pressure of the gas p [Pa].
-    temperature
-        Temperature of air and vapour at the start [K].
+    pressure, temperature
+        Pressure of the gas p [Pa], and temperature of air and vapour at the start [K].
     air
-        Molecules of air :math:`N_a` [1].
+        Molecules of air :math:`N_a`.
     vapor
-        Molecules of vapour at the start, :math:`N_a e / (p - e)` at a vapour pressure e [1]. An excess over saturation
+        Molecules of vapour at the start, :math:`N_a e / (p - e)` at a vapour pressure e. An excess over saturation
         condenses.
     liquid
-        Molecules of liquid at the start n [1].
+        Molecules of liquid at the start n.
     liquid_temperature
         Temperature of the liquid at the start [K]; that of the air if none is given.
     nuclei_heat
         Total heat capacity C of condensation nuclei at the temperature of the liquid [k].
 
-    Returns
-    -------
-    EvaporationEquilibrium
-        Temperature, vapour pressure, molecules of vapour and of liquid at the end.
-
     Raises
     ------
     ValueError
-        If there is no air, the pressure is not positive, a temperature lies outside 0 to 647.096 K, or a number
-        is negative.
-
-    Notes
-    -----
-    The enthalpy rises with temperature, at saturation including the latent heat, so there is exactly one solution. It
-    is found by Newton's method, to rounding.
-
-    References
-    ----------
-    .. [1] Bohren, C. F., Albrecht, B. A. (1998), Atmospheric Thermodynamics, chapter 6.
+        If there is no air, a temperature lies outside 0 to 647.096 K, or a number is negative.
 
     Examples
     --------
@@ -128,43 +113,32 @@ def evaporation_equilibrium(
 
 
 def wet_bulb_temperature(pressure: ArrayLike, temperature: ArrayLike, dewpoint: ArrayLike) -> FloatArray:
-    r"""Return the thermodynamic wet-bulb temperature: that of air saturated by water of the final temperature.
+    r"""Return the thermodynamic wet-bulb temperature: that of air saturated by water of the final temperature [K].
 
-    Adiabatic saturation at constant pressure. Per molecule of air, with v molecules of vapour,
+    Adiabatic saturation at constant pressure (American Meteorological Society, Glossary of Meteorology). Per molecule
+    of air, with v molecules of vapour,
 
     .. math:: (c_{pd} + v c_{pv}) (T - T_w) = (v_s(T_w) - v)\, L(T_w) .
 
     Parameters
     ----------
-    pressure
-        Pressure [Pa].
-    temperature
-        Temperature T [K].
+    pressure, temperature
+        Pressure [Pa] and temperature T [K].
     dewpoint
         Dewpoint [K], not above the temperature; 0 K in dry air.
-
-    Returns
-    -------
-    ndarray
-        Wet-bulb temperature :math:`T_w` [K].
 
     Raises
     ------
     ValueError
-        If a pressure or a temperature is not positive, the air is supersaturated, or water boils at its dewpoint.
+        If the air is supersaturated, or water boils at its dewpoint.
 
     Notes
     -----
     MetPy's ``wet_bulb_temperature`` is another quantity, Normand's: the cloud base is brought down along a
-    pseudo-adiabat. In air of 0 to 30 degC that is not very dry it is lower by 0.05 to 0.3 K; at 40 degC and
-    a dewpoint of -10 degC, by 0.9 K. A psychrometer shows the result of the exchange of heat and vapour at its bulb:
-    with the coefficient of the WMO, 6.53e-4 (1 + 9.44e-4 t) K^-1, it reads 0.1 K above this temperature at 20 degC
-    and a dewpoint of 0 degC, and 0.2 K at 40 degC.
-
-    References
-    ----------
-    .. [1] American Meteorological Society, Glossary of Meteorology, thermodynamic wet-bulb temperature.
-    .. [2] Knox, J. A., Nevius, D. S., Knox, P. N. (2017), doi:10.1175/BAMS-D-16-0246.1.
+    pseudo-adiabat (Knox, Nevius and Knox 2017, doi:10.1175/BAMS-D-16-0246.1). In air of 0 to 30 degC that is not very
+    dry it is lower by 0.05 to 0.3 K; at 40 degC and a dewpoint of -10 degC, by 0.9 K. A psychrometer shows the result
+    of the exchange of heat and vapour at its bulb: with the coefficient of the WMO, 6.53e-4 (1 + 9.44e-4 t) K^-1, it
+    reads 0.1 K above this temperature at 20 degC and a dewpoint of 0 degC, and 0.2 K at 40 degC.
 
     Examples
     --------

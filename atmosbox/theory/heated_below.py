@@ -126,10 +126,8 @@ def adiabatic_lapse_rate(gas: Gas, density: ArrayLike, gravity: float) -> FloatA
 
     Parameters
     ----------
-    gas
-        The molecules.
-    density
-        Number density [1/length^3; of discs 1/length^2].
+    gas, density
+        The molecules, and their number density [1/length^3; of discs 1/length^2].
     gravity
         Acceleration of gravity [length/time^2].
 
@@ -160,20 +158,16 @@ def rest_state(
     *,
     jump: float = _JUMP,
 ) -> RestState:
-    r"""Return the steady state of air at rest between a floor and a ceiling that are thermostats.
+    """Return the steady state of air at rest between a floor and a ceiling that are thermostats.
 
     Parameters
     ----------
-    gas
-        The molecules.
-    height
-        Height of the ceiling [length].
+    gas, height
+        The molecules, and the height of the ceiling [length].
     floor, ceiling
         Temperature of floor and ceiling [energy].
-    gravity
-        Acceleration of gravity [length/time^2].
-    density
-        Mean number density [1/length^3; of discs 1/length^2].
+    gravity, density
+        Acceleration of gravity [length/time^2], and mean number density [1/length^3; of discs 1/length^2].
     nodes
         Heights at which the state is wanted [length]; by default 401 from floor to ceiling.
     jump
@@ -310,10 +304,10 @@ def growth_rates(
     jump: float = _JUMP,
     slip: float = _SLIP,
 ) -> FloatArray:
-    r"""Return how fast waves of convection grow in a thin gas at rest, :math:`e^{st}`; negative where they decay.
+    """Return how fast waves of convection grow in a thin gas at rest [1/time]; negative where they decay.
 
     Density, wind and temperature are perturbed by :math:`e^{st + ikx}` times functions of the height, at Chebyshev
-    points; of all eigenvalues s the one with the largest real part counts.
+    points; of all eigenvalues s, the growth rates, the one with the largest real part counts.
 
     Parameters
     ----------
@@ -325,11 +319,6 @@ def growth_rates(
         Order of the polynomials in the height.
     slip
         Length along which the wind slips at the walls [mean free path].
-
-    Returns
-    -------
-    ndarray, (wave,)
-        Growth rates s [1/time].
 
     Raises
     ------

@@ -1,19 +1,12 @@
 r"""Water vapour in the air: saturation, dewpoint, mixing ratio, relative humidity, virtual temperature.
 
 A molecule of water is held in the liquid by one binding energy, :math:`\varphi`; it has the heat capacity 4 k as
-vapour, at constant pressure, and 9.14 k as liquid. These three numbers give the latent heat and, by the law of
-Clausius and Clapeyron, the vapour pressure. One pair of numbers is taken from measurement: 2.50084e6 J/kg and 611.2 Pa
-at 273.16 K. The vapour pressure of measured water (IAPWS) is here to compare with; nothing in a
-simulation uses it.
+vapour, at constant pressure, and 9.14 k as liquid. These three numbers give the latent heat and, by the law of Clausius
+and Clapeyron, the vapour pressure. One pair of numbers is taken from measurement: 2.50084e6 J/kg and 611.2 Pa at 273.16
+K. The vapour pressure of measured water (IAPWS) is here to compare with; no simulation uses it.
 
 Names are those of MetPy. Temperatures are in K, pressures in Pa, mixing ratios in kg per kg of dry air, relative
 humidities in parts of one.
-
-References
-----------
-Ambaum, M. H. P. (2020), Accurate, simple equation for saturated vapour pressure over water and ice,
-doi:10.1002/qj.3899.
-Emanuel, K. A. (1994), Atmospheric Convection, chapter 4.
 """
 
 import numpy as np
@@ -53,9 +46,9 @@ BINDING_TEMPERATURE: float = _water.BINDING
 
 
 def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
-    r"""Return the pressure of the vapour over liquid water when as many molecules evaporate as condense.
+    r"""Return the pressure of the vapour over liquid water when as many molecules evaporate as condense [Pa]; 0 at 0 K.
 
-    The law of Rankine and Kirchhoff [1]_, with :math:`T_t` = 273.16 K:
+    The law of Rankine and Kirchhoff (Ambaum 2020, doi:10.1002/qj.3899, equation 13), with :math:`T_t` = 273.16 K:
 
     .. math:: e_s = 611.2\,\mathrm{Pa}\, \exp\left[-\frac{\varphi}{k} \left(\frac{1}{T} - \frac{1}{T_t}\right)
               - \frac{c_l - c_{pv}}{k} \ln \frac{T}{T_t}\right] .
@@ -64,11 +57,6 @@ def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
     ----------
     temperature
         Temperature [K]. Below 273.16 K the water is supercooled: there is no ice here.
-
-    Returns
-    -------
-    ndarray
-        Saturation vapour pressure [Pa]; 0 at 0 K.
 
     Raises
     ------
@@ -81,10 +69,6 @@ def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
     at 20, 0.44 % at 40 and 2.2 % at 100 degC, because the heat capacities of real water change with temperature. MetPy
     1.7 uses the same formula of the same paper, with 4.03 k for the vapour: their agreement to 0.03 % confirms neither.
 
-    References
-    ----------
-    .. [1] Ambaum, M. H. P. (2020), doi:10.1002/qj.3899, equation 13.
-
     Examples
     --------
     In hPa, at -10, 0, 20 and 40 degC:
@@ -96,28 +80,14 @@ def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
 
 
 def dewpoint(vapor_pressure: ArrayLike) -> FloatArray:
-    r"""Return the temperature to which air must cool for its vapour to be saturated.
+    """Return the temperature to which air must cool for its vapour to be saturated [K]; 0 K without any vapour.
 
-    The inverse of :func:`saturation_vapor_pressure`, by Lambert's function [1]_.
+    The inverse of :func:`saturation_vapor_pressure`, by Lambert's function (Romps 2017, doi:10.1175/JAS-D-17-0102.1).
 
     Parameters
     ----------
     vapor_pressure
-        Vapour pressure e [Pa].
-
-    Returns
-    -------
-    ndarray
-        Dewpoint [K]; 0 K without any vapour.
-
-    Raises
-    ------
-    ValueError
-        If a vapour pressure is negative, or above that of the critical point.
-
-    References
-    ----------
-    .. [1] Romps, D. M. (2017), Exact expression for the lifting condensation level, doi:10.1175/JAS-D-17-0102.1.
+        Vapour pressure e [Pa], at most that of the critical point.
 
     Examples
     --------
@@ -139,41 +109,27 @@ _COLDEST = 233.15
 
 
 def saturation_vapor_pressure_iapws(temperature: ArrayLike) -> FloatArray:
-    r"""Return the saturation vapour pressure over liquid water by the formula of IAPWS, a fit to measurements.
+    r"""Return the saturation vapour pressure over liquid water by the formula of IAPWS, a fit to measurements [Pa].
 
-    Equation 1 of the release SR1-86(1992) of the International Association for the Properties of Water and Steam
-    [1]_, by Wagner and Pruss [2]_. With :math:`\vartheta = 1 - T/T_c`, :math:`T_c` = 647.096 K and :math:`p_c` =
-    22.064 MPa,
+    Equation 1 of the release SR1-86(1992) of the International Association for the Properties of Water and Steam,
+    iapws.org/relguide/Supp-sat.html, by Wagner and Pruss (1993), doi:10.1063/1.555926. With
+    :math:`\vartheta = 1 - T/T_c`, :math:`T_c` = 647.096 K and :math:`p_c` = 22.064 MPa,
 
     .. math:: \ln \frac{e_s}{p_c} = \frac{T_c}{T} \left(a_1 \vartheta + a_2 \vartheta^{1.5} + a_3 \vartheta^3
               + a_4 \vartheta^{3.5} + a_5 \vartheta^4 + a_6 \vartheta^{7.5}\right) .
+
+    The release covers 273.16 K to the critical point. Below 273.16 K this is the same formula extended: at -20 degC it
+    is 0.08 %, at -40 degC 0.7 % above that of Murphy and Koop (2005), doi:10.1256/qj.04.94, for supercooled water.
 
     Parameters
     ----------
     temperature
         Temperature [K].
 
-    Returns
-    -------
-    ndarray
-        Saturation vapour pressure [Pa].
-
     Raises
     ------
     ValueError
         If a temperature lies below 233.15 K, where water freezes at once, or above the critical point, 647.096 K.
-
-    Notes
-    -----
-    The release covers 273.16 K to the critical point. Below 273.16 K this is the same formula extended: at -20 degC it
-    is 0.08 %, at -40 degC 0.7 % above that of Murphy and Koop [3]_ for supercooled water.
-
-    References
-    ----------
-    .. [1] IAPWS SR1-86(1992), Revised Supplementary Release on Saturation Properties of Ordinary Water Substance,
-       iapws.org/relguide/Supp-sat.html.
-    .. [2] Wagner, W., Pruss, A. (1993), doi:10.1063/1.555926.
-    .. [3] Murphy, D. M., Koop, T. (2005), doi:10.1256/qj.04.94.
 
     Examples
     --------
@@ -198,24 +154,12 @@ WATER_MASS_RATIO: float = MASS_RATIO
 
 
 def vapor_pressure(pressure: ArrayLike, mixing_ratio: ArrayLike) -> FloatArray:
-    r"""Return the partial pressure of water vapour in air, :math:`p r / (\epsilon + r)`.
+    r"""Return the partial pressure of water vapour in air, :math:`p r / (\epsilon + r)` [Pa].
 
     Parameters
     ----------
-    pressure
-        Pressure of the air p [Pa].
-    mixing_ratio
-        Mass of vapour per mass of dry air r [kg kg^-1].
-
-    Returns
-    -------
-    ndarray
-        Vapour pressure [Pa].
-
-    Raises
-    ------
-    ValueError
-        If a pressure is not positive or a mixing ratio is negative.
+    pressure, mixing_ratio
+        Pressure of the air p [Pa], and mass of vapour per mass of dry air r [kg kg^-1].
 
     Examples
     --------
@@ -229,19 +173,12 @@ def vapor_pressure(pressure: ArrayLike, mixing_ratio: ArrayLike) -> FloatArray:
 
 
 def mixing_ratio(vapor_pressure: ArrayLike, pressure: ArrayLike) -> FloatArray:
-    r"""Return the mass of vapour per mass of dry air, :math:`\epsilon e / (p - e)`.
+    r"""Return the mass of vapour per mass of dry air, :math:`\epsilon e / (p - e)` [kg kg^-1].
 
     Parameters
     ----------
-    vapor_pressure
-        Vapour pressure e [Pa].
-    pressure
-        Pressure of the air, with its vapour, p [Pa].
-
-    Returns
-    -------
-    ndarray
-        Mixing ratio [kg kg^-1].
+    vapor_pressure, pressure
+        Vapour pressure e, and pressure of the air with its vapour p [Pa].
 
     Raises
     ------
@@ -264,25 +201,17 @@ def mixing_ratio(vapor_pressure: ArrayLike, pressure: ArrayLike) -> FloatArray:
 
 
 def saturation_mixing_ratio(pressure: ArrayLike, temperature: ArrayLike) -> FloatArray:
-    r"""Return the mass of vapour per mass of dry air at saturation, :math:`\epsilon e_s / (p - e_s)`.
+    r"""Return the mass of vapour per mass of dry air at saturation, :math:`\epsilon e_s / (p - e_s)` [kg kg^-1].
 
     Parameters
     ----------
-    pressure
-        Pressure of the air, with its vapour [Pa].
-    temperature
-        Temperature [K].
-
-    Returns
-    -------
-    ndarray
-        Saturation mixing ratio [kg kg^-1].
+    pressure, temperature
+        Pressure of the air with its vapour [Pa], and temperature [K].
 
     Raises
     ------
     ValueError
-        If a temperature lies outside the range of :func:`saturation_vapor_pressure`, or water of that
-        temperature boils at that pressure.
+        If water of that temperature boils at that pressure.
 
     Examples
     --------
@@ -295,10 +224,10 @@ def saturation_mixing_ratio(pressure: ArrayLike, temperature: ArrayLike) -> Floa
 
 
 def density_temperature(temperature: ArrayLike, vapor: ArrayLike, liquid: ArrayLike = 0.0) -> FloatArray:
-    r"""Return the temperature at which dry air would be as dense as air with this vapour and this liquid.
+    r"""Return the temperature at which dry air would be as dense as air with this vapour and this liquid [K].
 
-    :math:`T (1 + r/\epsilon) / (1 + r + l)` [1]_: vapour makes air lighter, and a cloud carries the weight of its
-    water. Without liquid it is the virtual temperature.
+    :math:`T (1 + r/\epsilon) / (1 + r + l)`: vapour makes air lighter, and a cloud carries the weight of its water
+    (Emanuel 1994, Atmospheric Convection, equation 4.3.6). Without liquid it is the virtual temperature.
 
     Parameters
     ----------
@@ -306,15 +235,6 @@ def density_temperature(temperature: ArrayLike, vapor: ArrayLike, liquid: ArrayL
         Temperature [K].
     vapor, liquid
         Mass per mass of dry air [kg kg^-1].
-
-    Returns
-    -------
-    ndarray
-        Density temperature [K].
-
-    References
-    ----------
-    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, equation 4.3.6.
 
     Examples
     --------
@@ -329,30 +249,14 @@ def density_temperature(temperature: ArrayLike, vapor: ArrayLike, liquid: ArrayL
 
 
 def virtual_temperature(temperature: ArrayLike, mixing_ratio: ArrayLike) -> FloatArray:
-    r"""Return the temperature at which dry air of the same pressure is as dense as this air, which has no liquid.
+    r"""Return the temperature at which dry air of the same pressure is as dense as this air, which has no liquid [K].
 
-    :math:`T (1 + r / \epsilon) / (1 + r)`: vapour makes air lighter.
+    :math:`T (1 + r / \epsilon) / (1 + r)`: vapour makes air lighter (Emanuel 1994, Atmospheric Convection, chapter 4).
 
     Parameters
     ----------
-    temperature
-        Temperature T [K].
-    mixing_ratio
-        Mass of vapour per mass of dry air r [kg kg^-1].
-
-    Returns
-    -------
-    ndarray
-        Virtual temperature [K].
-
-    Raises
-    ------
-    ValueError
-        If a temperature is not positive or a mixing ratio is negative.
-
-    References
-    ----------
-    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, equation 4.3.6.
+    temperature, mixing_ratio
+        Temperature T [K], and mass of vapour per mass of dry air r [kg kg^-1].
 
     Examples
     --------

@@ -7,10 +7,6 @@ Each layer carries the weight of the layers above, :math:`dP/dz = -n m g`, and t
 
 which is solved here at each height, and for the constant that gives the right number of molecules. The density
 oscillations within a few diameters of a wall are left out: this is the local-density approximation.
-
-References
-----------
-Both, J. A., Hong, D. C. (2001), doi:10.1103/PhysRevE.64.061105.
 """
 
 import math
@@ -124,9 +120,12 @@ def hydrostatic_layers(
     diameter: float = 0.0,
     dimensions: int = 3,
 ) -> FloatArray:
-    r"""Return the mean number density in each layer of a closed isothermal column.
+    """Return the mean number density in each layer of a closed isothermal column [length^-3; in a plane, length^-2].
 
-    It is the expected count of molecules in the layer, per volume.
+    It is the expected count of molecules in the layer, (layers,), per volume. A layer carries its own weight, so its
+    mean density is the difference between the pressures below and above it over m g times its thickness, however thick
+    it is (Both and Hong 2001, doi:10.1103/PhysRevE.64.061105). In layers thinner than a hundredth of a scale height,
+    where that difference has few digits, it is a Gauss-Legendre quadrature.
 
     Parameters
     ----------
@@ -136,10 +135,8 @@ def hydrostatic_layers(
         Molecules above each unit of area [length^-2]; in a plane, above each unit of length [length^-1].
     bottom, top
         Lowest and highest position of a molecule's centre [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
+    kT, mass
+        Temperature as an energy [energy], and mass of a molecule [mass].
     gravity
         Acceleration of gravity [length time^-2]; zero is allowed.
     diameter
@@ -147,26 +144,10 @@ def hydrostatic_layers(
     dimensions
         3, or 2 for discs in a plane.
 
-    Returns
-    -------
-    ndarray : (layers,)
-        Mean number density of centres in each layer [length^-3; in a plane, length^-2].
-
     Raises
     ------
     ValueError
-        If the edges do not rise, a value is not positive, dimensions is neither 2 nor 3, or the gas at the floor would
-        freeze.
-
-    Notes
-    -----
-    A layer carries its own weight, so its mean density is the difference between the pressures below and above it over
-    m g times its thickness, however thick it is. In layers thinner than a hundredth of a scale height, where that
-    difference has few digits, it is a Gauss-Legendre quadrature.
-
-    References
-    ----------
-    .. [1] Both, J. A., Hong, D. C. (2001), doi:10.1103/PhysRevE.64.061105.
+        If the edges do not rise, or the gas at the floor would freeze.
 
     Examples
     --------
@@ -204,27 +185,15 @@ def hydrostatic_mean_height(
     diameter: float = 0.0,
     dimensions: int = 3,
 ) -> float:
-    r"""Return the mean height of the molecules of a closed isothermal column, :math:`\int n z\,dz / \int n\,dz`.
+    r"""Return the mean height of the molecules of an isothermal column, :math:`\int n z\,dz / \int n\,dz` [length].
+
+    For points it is the closed form of :func:`column_mean_height`. For spheres and discs it is a Gauss-Legendre
+    quadrature with 16 points in each scale height, for any height of the column.
 
     Parameters
     ----------
     molecules_per_area, bottom, top, kT, mass, gravity, diameter, dimensions
         As in :func:`hydrostatic_layers`.
-
-    Returns
-    -------
-    float
-        Mean height of the centres [length].
-
-    Raises
-    ------
-    ValueError
-        As :func:`hydrostatic_layers`.
-
-    Notes
-    -----
-    For points it is the closed form of :func:`column_mean_height`. For spheres and discs it is a Gauss-Legendre
-    quadrature with 16 points in each scale height, for any height of the column.
 
     Examples
     --------
@@ -257,7 +226,7 @@ def column_temperature(
     dimensions: int = 3,
     rotation: int = 0,
 ) -> float:
-    r"""Return the temperature kT for a given energy per molecule, :math:`\tfrac{d + r}{2} kT + m g \bar z`.
+    r"""Return the temperature kT for a given energy per molecule, :math:`\tfrac{d + r}{2} kT + m g \bar z` [energy].
 
     The mean height rises with temperature, so there is exactly one solution.
 
@@ -265,23 +234,10 @@ def column_temperature(
     ----------
     energy
         Kinetic and potential energy per molecule [energy].
-    molecules_per_area
-        As in :func:`hydrostatic_layers` [length^-2; in a plane, length^-1].
-    bottom, top
-        Lowest and highest place of a molecule's centre [length].
-    diameter
-        Diameter of a molecule [length]; zero for an ideal gas.
-    mass, gravity
-        Mass of a molecule [mass] and acceleration of gravity [length time^-2].
-    dimensions
-        3, or 2 for discs in a plane.
+    molecules_per_area, bottom, top, diameter, mass, gravity, dimensions
+        As in :func:`hydrostatic_layers`.
     rotation
         Degrees of freedom of rotation.
-
-    Returns
-    -------
-    float
-        Temperature as an energy [energy].
 
     Raises
     ------

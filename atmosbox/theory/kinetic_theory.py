@@ -5,16 +5,9 @@ How often molecules collide follows from Enskog's theory: the rate of a thin gas
 
 Fast molecules reach a wall more often than slow ones, so those that cross a plane are not a representative sample: they
 carry 2 kT of energy each, not 3/2 kT. A heat bath must send out molecules with the same distribution, or the gas beside
-it is too cold.
+it is too cold (Tehver, R., et al. 1998, doi:10.1103/PhysRevE.57.R17).
 
 Near a wall a molecule has fewer partners, so collisions are rarer than in open space, and Z - 1 is a little smaller.
-
-References
-----------
-Maxwell, J. C. (1860), doi:10.1080/14786446008642818.
-Chapman, S., Cowling, T. G. (1970), Mathematical Theory of Non-uniform Gases, sections 5.2, 16.2.
-Garcia, A. L., Wagner, W. (2006), J. Comput. Phys. 217, 693 (WIAS preprint 1013). Tehver, R., et al. (1998),
-doi:10.1103/PhysRevE.57.R17.
 """
 
 from __future__ import annotations
@@ -49,28 +42,14 @@ __all__ = [
 
 
 def mean_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
-    r"""Return the mean speed of the molecules.
-
-    :math:`\sqrt{8kT/\pi m}`, or :math:`\sqrt{\pi kT/2m}` in a plane.
+    r"""Return the mean speed of the molecules, :math:`\sqrt{8kT/\pi m}`, or :math:`\sqrt{\pi kT/2m}` in a plane.
 
     Parameters
     ----------
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
+    kT, mass
+        Temperature as an energy [energy], and mass of a molecule [mass].
     dimensions
         3, or 2 for molecules in a plane.
-
-    Returns
-    -------
-    ndarray
-        Mean speed [length time^-1].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
 
     Examples
     --------
@@ -87,34 +66,17 @@ def mean_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArra
 
 
 def maxwell_speed_density(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
-    r"""Return Maxwell's distribution of speeds: the share of molecules per interval of speed.
+    r"""Return Maxwell's distribution of speeds: the share of molecules per interval of speed [time length^-1].
 
-    :math:`4\pi (m/2\pi kT)^{3/2} v^2 e^{-mv^2/2kT}` in space, :math:`(m v/kT)\, e^{-mv^2/2kT}` in a plane.
+    :math:`4\pi (m/2\pi kT)^{3/2} v^2 e^{-mv^2/2kT}` in space, :math:`(m v/kT)\, e^{-mv^2/2kT}` in a plane (Maxwell
+    1860, doi:10.1080/14786446008642818).
 
     Parameters
     ----------
-    speed
-        Speed [length time^-1], at least zero.
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
+    speed, kT, mass
+        Speed [length time^-1], temperature as an energy [energy], mass of a molecule [mass].
     dimensions
         3, or 2 for molecules in a plane.
-
-    Returns
-    -------
-    ndarray
-        Probability density of the speed [time length^-1].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
-
-    References
-    ----------
-    .. [1] Maxwell, J. C. (1860), doi:10.1080/14786446008642818.
 
     Examples
     --------
@@ -136,33 +98,13 @@ def maxwell_speed_density(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dime
 def maxwell_speed_cumulative(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
     r"""Return the share of molecules slower than a speed.
 
-    The regularised incomplete gamma function :math:`P(d/2,\, mv^2/2kT)` in d dimensions. The mean of the
-    density over a bin of a histogram is the difference of two of these, divided by the width of the bin.
+    The regularised incomplete gamma function :math:`P(d/2,\, mv^2/2kT)` in d dimensions. The mean of the density over a
+    bin of a histogram is the difference of two of these, divided by the width of the bin.
 
     Parameters
     ----------
-    speed
-        Speed [length time^-1], at least zero.
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    dimensions
-        3, or 2 for molecules in a plane.
-
-    Returns
-    -------
-    ndarray
-        Share of the molecules, 0 to 1 [1].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
-
-    References
-    ----------
-    .. [1] Maxwell, J. C. (1860), doi:10.1080/14786446008642818.
+    speed, kT, mass, dimensions
+        As for :func:`maxwell_speed_density`.
 
     Examples
     --------
@@ -184,23 +126,14 @@ def maxwell_speed_cumulative(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, d
 def temperature_noise(molecules: ArrayLike, dof: float = 3, temperature: ArrayLike = 1.0) -> FloatArray:
     r"""Return the standard deviation of the temperature of N molecules in a heat bath, :math:`T \sqrt{2/fN}`.
 
+    See Hadjiconstantinou, N. G., et al. (2003), doi:10.1016/S0021-9991(03)00099-8.
+
     Parameters
     ----------
-    molecules
-        Number of molecules N [1].
-    dof
-        Degrees of freedom f of one molecule [1].
+    molecules, dof
+        Number of molecules N, and degrees of freedom f of one molecule.
     temperature
         Mean temperature, in K or as an energy; with the default of 1 the result is relative.
-
-    Returns
-    -------
-    ndarray
-        Standard deviation, in the unit of the temperature.
-
-    References
-    ----------
-    .. [1] Hadjiconstantinou, N. G., et al. (2003), doi:10.1016/S0021-9991(03)00099-8.
 
     Examples
     --------
@@ -214,33 +147,17 @@ def temperature_noise(molecules: ArrayLike, dof: float = 3, temperature: ArrayLi
 
 
 def collision_rate(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
-    r"""Return the collision rate of one molecule, :math:`\nu = 4 n \sigma^2 g(\sigma) \sqrt{\pi k T / m}`.
+    r"""Return the collision rate of one molecule, :math:`\nu = 4 n \sigma^2 g(\sigma) \sqrt{\pi k T / m}` [time^-1].
+
+    A gas of N molecules has N/2 times as many collisions (Chapman and Cowling 1970, Mathematical Theory of Non-uniform
+    Gases, sections 5.2, 16.2).
 
     Parameters
     ----------
-    number_density
-        Molecules per volume [length^-3].
-    diameter
-        Diameter of a molecule [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-
-    Returns
-    -------
-    ndarray
-        Collisions per molecule and time [time^-1]; a gas of N molecules has N/2 times as many.
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), Mathematical Theory of Non-uniform Gases, sections 5.2, 16.2.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    number_density, diameter
+        Molecules per volume [length^-3], and diameter of a molecule [length].
+    kT, mass
+        Temperature as an energy [energy], and mass of a molecule [mass].
 
     Examples
     --------
@@ -259,32 +176,12 @@ def collision_rate(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike
 
 
 def mean_free_time(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
-    r"""Return the mean time between two collisions of one molecule, :math:`\tau = 1 / \nu`.
+    r"""Return the mean time between two collisions of one molecule, :math:`\tau = 1 / \nu` [time].
 
     Parameters
     ----------
-    number_density
-        Molecules per volume [length^-3], above zero.
-    diameter
-        Diameter of a molecule [length], above zero.
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-
-    Returns
-    -------
-    ndarray
-        Mean free time [time].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), Mathematical Theory of Non-uniform Gases, sections 5.2, 16.2.
+    number_density, diameter, kT, mass
+        As for :func:`collision_rate`, above zero.
 
     Examples
     --------
@@ -298,31 +195,15 @@ def mean_free_time(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike
 
 
 def mean_free_path(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray:
-    r"""Return the mean distance between two collisions of one molecule.
+    r"""Return the mean distance between two collisions of one molecule [length].
 
-    :math:`\lambda = 1 / (\sqrt{2} \pi n \sigma^2 g)`. It is the mean speed times the mean free time, and does
-    not depend on the temperature.
+    :math:`\lambda = 1 / (\sqrt{2} \pi n \sigma^2 g)`. It is the mean speed times the mean free time, and does not
+    depend on the temperature.
 
     Parameters
     ----------
-    number_density
-        Molecules per volume [length^-3], above zero.
-    diameter
-        Diameter of a molecule [length], above zero.
-
-    Returns
-    -------
-    ndarray
-        Mean free path [length].
-
-    Raises
-    ------
-    ValueError
-        If a packing fraction lies outside the range of the equation of state.
-
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), Mathematical Theory of Non-uniform Gases, sections 5.2, 16.2.
+    number_density, diameter
+        Molecules per volume [length^-3], and diameter of a molecule [length], above zero.
 
     Examples
     --------
@@ -336,36 +217,27 @@ def mean_free_path(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray
 
 
 def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray:
-    r"""Return the pair distribution at contact between the species of a mixture, :math:`g_{ij}`.
+    r"""Return the pair distribution at contact between the species of a mixture, :math:`g_{ij}`, (species, species).
 
-    The form of Boublík [1]_ and of Mansoori, Carnahan, Starling and Leland [2]_,
+    The form of Boublík (1970), doi:10.1063/1.1673824, and of Mansoori, Carnahan, Starling and Leland (1971),
+    doi:10.1063/1.1675048,
 
     .. math:: g_{ij} = \frac{1}{1-\phi} + \frac{3}{2} \frac{\xi d_{ij}}{(1-\phi)^2}
               + \frac{1}{2} \frac{(\xi d_{ij})^2}{(1-\phi)^3},
               \quad \xi = \frac{\pi}{6} \sum_k n_k \sigma_k^2,
               \quad d_{ij} = \frac{2 \sigma_i \sigma_j}{\sigma_i + \sigma_j} .
 
+    With one species it is that of Carnahan and Starling.
+
     Parameters
     ----------
-    number_density : (species,)
-        Molecules of each species per volume [length^-3].
-    diameter : (species,)
-        Diameter of each species [length].
-
-    Returns
-    -------
-    ndarray : (species, species)
-        Pair distribution at contact [1]. With one species, that of Carnahan and Starling.
+    number_density, diameter : (species,)
+        Molecules of each species per volume [length^-3], and their diameters [length].
 
     Raises
     ------
     ValueError
         If the two arguments differ in length, or the molecules fill the space.
-
-    References
-    ----------
-    .. [1] Boublík, T. (1970), doi:10.1063/1.1673824.
-    .. [2] Mansoori, G. A., et al. (1971), doi:10.1063/1.1675048.
 
     Examples
     --------
@@ -391,37 +263,25 @@ def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> Flo
 
 
 def collision_rate_between(number_density: ArrayLike, diameter: ArrayLike, mass: ArrayLike, kT: float) -> FloatArray:
-    r"""Return how often a molecule of each species of a mixture collides with molecules of each species.
+    r"""Return how often a molecule of each species of a mixture collides with molecules of each species [time^-1].
 
-    :math:`\nu_{ij} = 2 n_j \sigma_{ij}^2 g_{ij} \sqrt{2 \pi k T / \mu_{ij}}` with :math:`\sigma_{ij}` the
-    mean of the two diameters and :math:`\mu_{ij} = m_i m_j / (m_i + m_j)`.
+    :math:`\nu_{ij} = 2 n_j \sigma_{ij}^2 g_{ij} \sqrt{2 \pi k T / \mu_{ij}}`, (species, species), with
+    :math:`\sigma_{ij}` the mean of the two diameters and :math:`\mu_{ij} = m_i m_j / (m_i + m_j)` (Chapman and Cowling
+    1970, sections 5.2, 16.2). The sum over j is the collision rate of a molecule of species i.
 
     Parameters
     ----------
-    number_density : (species,)
-        Molecules of each species per volume [length^-3].
-    diameter : (species,)
-        Diameter of each species [length].
+    number_density, diameter : (species,)
+        As for :func:`contact_value_between`.
     mass : (species,)
         Mass of a molecule of each species [mass].
     kT
         Temperature as an energy [energy].
 
-    Returns
-    -------
-    ndarray : (species, species)
-        Collisions with species j per molecule of species i and time [time^-1]. The sum over j is the collision rate of
-        a molecule of species i.
-
     Raises
     ------
     ValueError
         If the arguments differ in length, or the molecules fill the space.
-
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), Mathematical Theory of Non-uniform Gases, sections 5.2, 16.2.
-    .. [2] Mansoori, G. A., et al. (1971), doi:10.1063/1.1675048.
 
     Examples
     --------
@@ -448,31 +308,15 @@ def contact_share(sides: ArrayLike, diameter: float, molecules: int) -> float:
     Of the positions on a sphere of one diameter around a molecule where a partner could touch it, some lie beyond a
     wall. With :math:`s_i = \sigma / L_i`, for sides L that the centres can reach, and orientations n in all directions
     equally likely, the share of the others is the mean of :math:`\prod (1 - |n_i| s_i)`; and a molecule has N - 1
-    partners, not N.
+    partners, not N. This is exact for a thin gas, and to first order in :math:`\sigma / L` for a dense one. Over all
+    directions the means of :math:`|n_x|, |n_x n_y|, |n_x n_y n_z|` are :math:`1/2, 2/3\pi, 1/4\pi`.
 
     Parameters
     ----------
     sides : (axis,)
         Lengths that centres can reach, ``inf`` on a periodic axis [length].
-    diameter
-        Diameter of a molecule [length].
-    molecules
-        Number N of molecules.
-
-    Returns
-    -------
-    float
-        Share, between 0 and 1; exact for a thin gas, to first order in :math:`\sigma / L` for a dense one.
-
-    Raises
-    ------
-    ValueError
-        If there are no molecules.
-
-    Notes
-    -----
-    Over all directions the means of :math:`|n_x|, |n_x n_y|, |n_x n_y n_z|` are
-    :math:`1/2, 2/3\pi, 1/4\pi`.
+    diameter, molecules
+        Diameter of a molecule [length], and number N of molecules.
 
     Examples
     --------
@@ -500,25 +344,14 @@ class FreeMolecularSlab(NamedTuple):
 
 
 def emission_normal_speed(kT: ArrayLike, mass: ArrayLike) -> FloatArray:
-    r"""Return the mean normal speed of the molecules that leave a heat bath.
+    r"""Return the mean normal speed of molecules that leave a heat bath, :math:`\sqrt{\pi kT / 2m}` [length time^-1].
 
-    :math:`\sqrt{\pi kT / 2m}`.
+    See Garcia, A. L., Wagner, W. (2006), J. Comput. Phys. 217, 693 (WIAS preprint 1013).
 
     Parameters
     ----------
-    kT
-        Temperature of the wall as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-
-    Returns
-    -------
-    ndarray
-        Mean of the normal component of the velocity [length time^-1].
-
-    References
-    ----------
-    .. [1] Garcia, A. L., Wagner, W. (2006), J. Comput. Phys. 217, 693 (WIAS preprint 1013).
+    kT, mass
+        Temperature of the wall as an energy [energy], and mass of a molecule [mass].
 
     Examples
     --------
@@ -533,10 +366,10 @@ def emission_normal_speed(kT: ArrayLike, mass: ArrayLike) -> FloatArray:
 
 
 def emission_energy(kT: ArrayLike, dimensions: int = 3, rotational_dof: float = 0) -> FloatArray:
-    r"""Return the mean energy that a molecule takes from a heat bath, 2 kT for a sphere.
+    r"""Return the mean energy that a molecule takes from a heat bath, 2 kT for a sphere [energy].
 
-    The energy follows a gamma distribution of shape :math:`(d + 1 + \zeta)/2` in d dimensions with
-    :math:`\zeta` rotational degrees of freedom.
+    The energy follows a gamma distribution of shape :math:`(d + 1 + \zeta)/2` in d dimensions with :math:`\zeta`
+    rotational degrees of freedom (Garcia and Wagner 2006, as for :func:`emission_normal_speed`).
 
     Parameters
     ----------
@@ -545,21 +378,7 @@ def emission_energy(kT: ArrayLike, dimensions: int = 3, rotational_dof: float = 
     dimensions
         3, or 2 for molecules in a plane.
     rotational_dof
-        Rotational degrees of freedom: 0, or 2 for air, 3 for water vapour [1].
-
-    Returns
-    -------
-    ndarray
-        Mean energy [energy].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
-
-    References
-    ----------
-    .. [1] Garcia, A. L., Wagner, W. (2006), J. Comput. Phys. 217, 693 (WIAS preprint 1013).
+        Rotational degrees of freedom: 0, or 2 for air, 3 for water vapour.
 
     Examples
     --------
@@ -578,7 +397,8 @@ def free_molecular_slab(
     r"""Return the state of a very thin gas between two heat baths of different temperature.
 
     Two streams cross without collisions, one from each wall. They carry equal numbers of molecules, so the colder
-    stream is denser, and the gas has the geometric mean of the two temperatures everywhere:
+    stream is denser, and the gas has the geometric mean of the two temperatures everywhere (Sone 2007, Molecular Gas
+    Dynamics, doi:10.1007/978-0-8176-4573-1). The heat flows from the first wall to the second:
 
     .. math:: T = \sqrt{T_1 T_2}, \qquad p = n k \sqrt{T_1 T_2}, \qquad
               q = 2 n k \sqrt{2k/\pi m}\, \sqrt{T_1 T_2}\, (\sqrt{T_1} - \sqrt{T_2})\, (1 + \zeta/4) .
@@ -587,21 +407,10 @@ def free_molecular_slab(
     ----------
     kT1, kT2
         Temperature of the first and of the second wall as an energy [energy].
-    number_density
-        Molecules per volume [length^-3].
-    mass
-        Mass of a molecule [mass].
+    number_density, mass
+        Molecules per volume [length^-3], and mass of a molecule [mass].
     rotational_dof
-        Rotational degrees of freedom :math:`\zeta`; each carries kT/2 from wall to wall [1].
-
-    Returns
-    -------
-    FreeMolecularSlab
-        Temperature, pressure, and heat flux from the first wall to the second.
-
-    References
-    ----------
-    .. [1] Sone, Y. (2007), Molecular Gas Dynamics, doi:10.1007/978-0-8176-4573-1.
+        Rotational degrees of freedom :math:`\zeta`; each carries kT/2 from wall to wall.
 
     Examples
     --------
@@ -634,21 +443,17 @@ class WalledGas(NamedTuple):
 def walled_gas(pressure: float, molecules: int, *, ideal: bool = False) -> WalledGas:
     r"""Return the gas of a pressure in a cube.
 
+    A surplus of energy leaves with the molecules that hit a wall, :math:`2kT` each of the :math:`\tfrac32 kT` that a
+    molecule has, and must first be conducted to the walls: its correlation time is
+    :math:`L / 2\bar c + L^2 / 3 \pi^2 D`, with the diffusivity :math:`D = 0.678 / \tfrac32 n \sigma^2` of a thin gas
+    (Chapman and Enskog), which is the least value.
+
     Parameters
     ----------
-    pressure
-        Pressure [kT/diameter^3].
-    molecules
-        Number of molecules.
+    pressure, molecules
+        Pressure [kT/diameter^3], and number of molecules.
     ideal
         Whether molecules have no volume and collide in pairs chosen at random: then Z is 1.
-
-    Notes
-    -----
-    A surplus of energy leaves with the molecules that hit a wall, :math:`2kT` each of the :math:`\tfrac32 kT` that a
-    molecule has, and must first be conducted to the walls: its correlation time is :math:`L / 2\bar c + L^2 / 3 \pi^2
-    D`, with the diffusivity :math:`D = 0.678 / \tfrac32 n \sigma^2` of a thin gas (Chapman and Enskog), which is the
-    least value.
 
     Examples
     --------

@@ -5,12 +5,6 @@ leaves reduces the surface energy by :math:`2 \gamma v / r`, and so leaves more 
 share of water molecules, and fewer of them leave. The first effect decreases as one over the radius, the second as one
 over its cube: over a drop with salt in it the vapour pressure has a maximum. At a higher humidity the drop grows
 without end.
-
-References
-----------
-Thomson, W. (1871), On the equilibrium of vapour at a curved surface of liquid, Phil. Mag. 42, 448,
-doi:10.1080/14786447108640606. Koehler, H. (1936), The nucleus in and the growth of hygroscopic droplets,
-doi:10.1039/TF9363201152.
 """
 
 from typing import NamedTuple
@@ -40,28 +34,16 @@ SALT_VOLUME: float = 58.44e-3 / 2165.0 / AVOGADRO / 2.0
 
 
 def water_surface_tension(temperature: ArrayLike) -> FloatArray:
-    r"""Return the surface tension of water beside its vapour.
+    r"""Return the surface tension of water beside its vapour [N/m]; 0 at the critical point.
 
     .. math:: \gamma = 0.2358\,\mathrm{N/m}\; \tau^{1.256} (1 - 0.625 \tau), \qquad \tau = 1 - T / 647.096\,\mathrm{K}.
+
+    By IAPWS (2014), Revised release on surface tension of ordinary water substance, R1-76(2014).
 
     Parameters
     ----------
     temperature
         Temperature [K]; below the triple point the water is supercooled, and the formula is extrapolated.
-
-    Returns
-    -------
-    ndarray
-        Surface tension [N/m]; 0 at the critical point.
-
-    Raises
-    ------
-    ValueError
-        If a temperature lies below 0 K or above the critical point of water.
-
-    References
-    ----------
-    IAPWS (2014), Revised release on surface tension of ordinary water substance, R1-76(2014).
 
     Examples
     --------
@@ -82,10 +64,8 @@ def drop_radius(number: ArrayLike, volume: float, core: float = 0.0) -> FloatArr
     ----------
     number
         Number of molecules in the drop.
-    volume
-        Volume of a molecule in the liquid [length^3].
-    core
-        Volume of the insoluble core of the drop, or of the salt in it [length^3].
+    volume, core
+        Volume of a molecule in the liquid, and of the insoluble core of the drop, or of the salt in it [length^3].
 
     Examples
     --------
@@ -102,6 +82,8 @@ def drop_radius(number: ArrayLike, volume: float, core: float = 0.0) -> FloatArr
 
 def kelvin_radius(tension: float, volume: float, kT: float) -> float:
     r"""Return the radius at which curvature multiplies the vapour pressure by e, :math:`2 \gamma v / kT`.
+
+    After Thomson, W. (1871), doi:10.1080/14786447108640606.
 
     Parameters
     ----------
@@ -129,28 +111,18 @@ def humidity_over_drop(
     .. math:: \frac{e}{e_s} = \frac{n}{n + s}\, \exp\frac{2 \gamma v}{r\, kT}
 
     for n molecules of water and s dissolved particles. The first factor is the activity of the water in an ideal
-    solution (Raoult), the second is Kelvin's; together they are Koehler's law.
+    solution (Raoult), the second is Kelvin's; together they are Koehler's law (1936, doi:10.1039/TF9363201152). When a
+    molecule leaves, the surface energy changes by E(n) - E(n - 1), and not by its derivative at n: for few molecules
+    the exact ratio is the one at n - 1/2.
 
     Parameters
     ----------
-    number
-        Number n of molecules of water in the drop.
+    number, particles
+        Number n of molecules of water in the drop, and number s of dissolved particles: two for each pair of ions.
     tension, volume, kT
         Surface tension [energy/length^2], volume of a molecule [length^3], temperature [energy].
-    particles
-        Number s of dissolved particles: two for each pair of ions.
     core
         Volume of the dissolved substance, or of an insoluble nucleus [length^3].
-
-    Returns
-    -------
-    ndarray
-        Relative humidity [1].
-
-    Notes
-    -----
-    When a molecule leaves, the surface energy changes by E(n) - E(n - 1), and not by its derivative at n: for few
-    molecules the exact ratio is the one at n - 1/2.
 
     Examples
     --------

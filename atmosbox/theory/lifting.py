@@ -29,12 +29,7 @@ def adiabatic_index(dof: ArrayLike = 5) -> FloatArray:
     Parameters
     ----------
     dof
-        Degrees of freedom f of one molecule [1].
-
-    Returns
-    -------
-    ndarray
-        Adiabatic index [1].
+        Degrees of freedom f of one molecule.
 
     Examples
     --------
@@ -49,21 +44,16 @@ def adiabatic_index(dof: ArrayLike = 5) -> FloatArray:
 def dry_adiabat_temperature(
     pressure: ArrayLike, temperature0: ArrayLike, pressure0: ArrayLike, dof: float = 5
 ) -> FloatArray:
-    r"""Return the temperature of dry air lifted to a pressure, :math:`T_0 (p/p_0)^{2/(f+2)}`.
+    """Return the temperature of dry air lifted to a pressure, :math:`T_0 (p/p_0)^{2/(f+2)}`.
 
     Parameters
     ----------
     pressure, pressure0
-        Pressure now and at the start [pressure].
+        Pressure now and at the start, in one unit.
     temperature0
-        Temperature at the start, in K or as an energy.
+        Temperature at the start, in K or as an energy; the result has its unit.
     dof
-        Degrees of freedom f of one molecule [1]: 5 for air, with the exponent 2/7; 3 for spheres, with 2/5.
-
-    Returns
-    -------
-    ndarray
-        Temperature, in the unit of the one at the start.
+        Degrees of freedom f of one molecule: 5 for air, with the exponent 2/7; 3 for spheres, with 2/5.
 
     Examples
     --------
@@ -82,22 +72,16 @@ def dry_lapse_rate(
     specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
     dof: float = 5,
 ) -> FloatArray:
-    r"""Return the cooling of dry air per metre of lift, :math:`g / c_p`.
+    """Return the cooling of dry air per metre of lift, :math:`g / c_p` [K m^-1].
 
     Parameters
     ----------
     gravity
         Acceleration of gravity [m s^-2].
     specific_gas_constant
-        Gas constant per mass, k over the mass of a molecule [J kg^-1 K^-1]; :math:`c_p` is :math:`f/2 + 1`
-        times it.
+        Gas constant per mass [J kg^-1 K^-1]; :math:`c_p` is :math:`f/2 + 1` times it.
     dof
-        Degrees of freedom f of one molecule [1].
-
-    Returns
-    -------
-    ndarray
-        Dry-adiabatic lapse rate, positive if air cools upward [K m^-1].
+        Degrees of freedom f of one molecule.
 
     Examples
     --------
@@ -210,26 +194,15 @@ class Ascent:
         r"""Return the standard deviation of the temperature from run to run along the route, as a share of it.
 
         The work that is done on a gas scatters, and close to equilibrium its variance is 2 kT times the work that is
-        dissipated [1]_. So the variance of the entropy of N molecules, in k, is twice the entropy that they have gained
-        on average, and at the pressure where they arrive
+        dissipated (Jarzynski 1997, doi:10.1103/PhysRevLett.78.2690). So the variance of the entropy of N molecules, in
+        k, is twice the entropy that they have gained on average, and at the pressure where they arrive
 
         .. math:: \left( \frac{\sigma_T}{T} \right)^2 = \frac{2}{N (f/2 + 1)} \frac{\Delta T}{T} ,
 
         with the mean warming :math:`\Delta T / T` of `finite_speed`. This holds as long as the gas responds linearly to
         its expansion, that is for :math:`e \tau \ll 1`. A second part does not depend on the speed: the pressure is
-        known from Z - 1, measured over 100 mean free times, in which 100 N collisions have a mean impulse that is known
-        to :math:`\sqrt{4 / \pi}` over the root of their number.
-
-        Parameters
-        ----------
-        molecules
-            Number N of molecules.
-        crowding
-            Z - 1 of the gas at the start; 0 for points.
-
-        References
-        ----------
-        .. [1] Jarzynski, C. (1997), doi:10.1103/PhysRevLett.78.2690.
+        known from Z - 1 (``crowding``; 0 for points), measured over 100 mean free times, in which 100 N collisions have
+        a mean impulse that is known to :math:`\sqrt{4 / \pi}` over the root of their number.
 
         Examples
         --------
@@ -250,13 +223,7 @@ class Ascent:
         """Return how much colder spheres arrive at a pressure [Pa] than points, as a share of the temperature.
 
         Both are lifted infinitely slowly; excluded volume cools spheres in second order of the packing fraction.
-
-        Parameters
-        ----------
-        pressure
-            Pressure at which they arrive [Pa].
-        density
-            Number of molecules at the start in the cube of their diameter.
+        ``density`` is the number of molecules at the start in the cube of their diameter.
         """
         density_on_the_way = density * np.geomspace(min(pressure, self.top_pressure) / self.pressure, 1.0, 200)
         filled = packing_fraction(density_on_the_way, 1.0)

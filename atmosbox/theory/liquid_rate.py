@@ -1,13 +1,8 @@
 r"""The molecules that leave a liquid, large or small: their rate and their energy.
 
-A liquid of n molecules with the heat capacity :math:`C = n c_l + C_n`, in k, and the thermal energy U has the
-density of states :math:`U^{C-1} / \Gamma(C)`. With the states of a gas this determines the rate at which molecules
-leave the liquid, for any n. A large liquid evaporates by the law of Hertz and Knudsen. Units are SI.
-
-References
-----------
-Weisskopf, V. (1937), Statistics and nuclear reactions, doi:10.1103/PhysRev.52.295: evaporation from a hot drop, by
-detailed balance.
+A liquid of n molecules with the heat capacity :math:`C = n c_l + C_n`, in k, and the thermal energy U has the density
+of states :math:`U^{C-1} / \Gamma(C)`. With the states of a gas this determines, by detailed balance, the rate at which
+molecules leave the liquid, for any n. A large liquid evaporates by the law of Hertz and Knudsen. Units are SI.
 """
 
 import numpy as np
@@ -39,31 +34,18 @@ LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
 
 
 def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:
-    r"""Return the number of molecules that leave a large liquid, per area and time.
+    r"""Return the number of molecules that leave a large liquid, per area and time [m^-2 s^-1]; 0 at 0 K.
 
-    It is the number that condenses at saturation, :math:`\alpha e_s / \sqrt{2 \pi m k T}`. For a liquid of a hundred
-    molecules, whose temperature fluctuates, the mean of this flux is too high, because :math:`e_s` is convex.
+    It is the number that condenses at saturation, :math:`\alpha e_s / \sqrt{2 \pi m k T}` (Persad and Ward 2016,
+    doi:10.1021/acs.chemrev.5b00511). For a liquid of a hundred molecules, whose temperature fluctuates, the mean of
+    this flux is too high, because :math:`e_s` is convex.
 
     Parameters
     ----------
     temperature
         Temperature of the liquid [K].
     accommodation
-        Share of the molecules that stick when they hit the liquid, :math:`\alpha` [1].
-
-    Returns
-    -------
-    ndarray
-        Molecules per area and time [m^-2 s^-1]; 0 at 0 K.
-
-    Raises
-    ------
-    ValueError
-        If a temperature lies outside 0 to 647.096 K or the accommodation is negative.
-
-    References
-    ----------
-    .. [1] Persad, A. H., Ward, C. A. (2016), doi:10.1021/acs.chemrev.5b00511.
+        Share of the molecules that stick when they hit the liquid, :math:`\alpha`.
 
     Examples
     --------
@@ -82,40 +64,27 @@ def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -
 def microcanonical_flux(
     thermal_energy: ArrayLike, molecules: ArrayLike, nuclei_heat: ArrayLike = 0.0, accommodation: ArrayLike = 1.0
 ) -> FloatArray:
-    r"""Return the number of molecules that leave a liquid of a given energy, per area and time: exact for any number.
+    r"""Return the number of molecules that leave a liquid of given energy, of any size, per area and time [m^-2 s^-1].
 
     With :math:`U' = U - \varphi`, :math:`C' = C - c_l` and Q such that a large liquid follows
     :func:`hertz_knudsen_flux`,
 
     .. math:: Q\, \frac{U'^{\,C' + 5/2}}{\Gamma(C' + 7/2)}\, \frac{\Gamma(C)}{U^{C-1}} ,
 
-    and zero if U' is not positive. Its mean over the energies of a liquid in a heat bath, distributed as
-    :math:`U^{C-1} e^{-U/kT}`, is the flux of Hertz and Knudsen at that temperature, for any n.
+    and zero if U' is not positive (Weisskopf 1937, doi:10.1103/PhysRev.52.295). Its mean over the energies of a liquid
+    in a heat bath, distributed as :math:`U^{C-1} e^{-U/kT}`, is the flux of Hertz and Knudsen at that temperature, for
+    any n.
 
     Parameters
     ----------
     thermal_energy
         Thermal energy of the liquid U, C k times its temperature [J].
     molecules
-        Molecules of the liquid n [1]; for 0 the flux is 0.
+        Molecules of the liquid n; for 0 the flux is 0.
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the liquid, :math:`C_n` [k].
     accommodation
-        Share of the molecules that stick when they hit the liquid [1].
-
-    Returns
-    -------
-    ndarray
-        Molecules per area and time [m^-2 s^-1].
-
-    Raises
-    ------
-    ValueError
-        If an argument is negative.
-
-    References
-    ----------
-    .. [1] Weisskopf, V. (1937), doi:10.1103/PhysRev.52.295.
+        Share of the molecules that stick when they hit the liquid.
 
     Examples
     --------
@@ -155,9 +124,10 @@ def _mean_density(edges: ArrayLike, temperature: float, shape: float, least: flo
 
 
 def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
-    r"""Return the distribution of the energy of molecules that leave a liquid, as a density per unit of energy.
+    r"""Return the distribution of the energy of molecules that leave a liquid, (bin,) [J^-1].
 
-    The energy is the binding energy :math:`\varphi` and a gamma variate, :math:`\varphi + kT\, \Gamma(2 + 3/2)`.
+    The energy is the binding energy :math:`\varphi` and a gamma variate, :math:`\varphi + kT\, \Gamma(2 + 3/2)`
+    (Weisskopf 1937, doi:10.1103/PhysRev.52.295).
 
     Parameters
     ----------
@@ -165,20 +135,6 @@ def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
         Bounds of the bins over which the density is averaged [J].
     temperature
         Temperature of the liquid [K].
-
-    Returns
-    -------
-    (bin,) ndarray
-        Density [J^-1].
-
-    Raises
-    ------
-    ValueError
-        If the temperature is not positive.
-
-    References
-    ----------
-    .. [1] Weisskopf, V. (1937), doi:10.1103/PhysRev.52.295.
 
     Examples
     --------
@@ -192,26 +148,14 @@ def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
 
 
 def staying_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
-    r"""Return the distribution of the thermal energy of molecules in a liquid, as a density per unit of energy.
+    r"""Return the distribution of the thermal energy of molecules in a liquid, (bin,) [J^-1].
 
     The energy is a gamma variate of the heat capacity, :math:`kT\, \Gamma(c_l / k)`.
 
     Parameters
     ----------
-    edges : (bin + 1,)
-        Bounds of the bins over which the density is averaged [J].
-    temperature
-        Temperature of the liquid [K].
-
-    Returns
-    -------
-    (bin,) ndarray
-        Density [J^-1].
-
-    Raises
-    ------
-    ValueError
-        If the temperature is not positive.
+    edges, temperature
+        As for :func:`leaving_energy_density`.
 
     Examples
     --------

@@ -1,12 +1,8 @@
-r"""Moist air that is lifted: its cloud base, and how cloud water and rain change its temperature.
+"""Moist air that is lifted: its cloud base, and how cloud water and rain change its temperature.
 
 Below the cloud base air follows the adiabat of the mixture of air and vapour; above it, that of air with vapour and
 liquid at equilibrium. Liquid may be carried, which makes the lift reversible, or leave as rain, which does not. Units
 are SI; mixing ratios are kg per kg of dry air. There is no ice.
-
-References
-----------
-Emanuel, K. A. (1994), Atmospheric Convection, chapter 4. Romps, D. M. (2017), doi:10.1175/JAS-D-17-0102.1.
 """
 
 import math
@@ -33,10 +29,10 @@ __all__ = ["ParcelPath", "lcl", "moist_air_poisson_exponent", "parcel_path", "ra
 
 
 def moist_air_poisson_exponent(mixing_ratio: ArrayLike, nuclei_heat: ArrayLike = 0.0) -> FloatArray:
-    r"""Return the exponent :math:`\kappa` of the adiabat :math:`T \propto p^\kappa` of air without cloud.
+    r"""Return the exponent :math:`\kappa` of the adiabat :math:`T \propto p^\kappa` of air without cloud, 2/7 if dry.
 
-    :math:`k / [(1-x) (c_{pd} + C) + x c_{pv}]` for a share x of vapour among the molecules, with
-    :math:`c_{pd} = 7k/2` and :math:`c_{pv} = 4k`.
+    :math:`k / [(1-x) (c_{pd} + C) + x c_{pv}]` for a share x of vapour among the molecules, with :math:`c_{pd} = 7k/2`
+    and :math:`c_{pv} = 4k`.
 
     Parameters
     ----------
@@ -44,16 +40,6 @@ def moist_air_poisson_exponent(mixing_ratio: ArrayLike, nuclei_heat: ArrayLike =
         Mass of vapour per mass of dry air [kg kg^-1].
     nuclei_heat
         Heat capacity C of condensation nuclei at the temperature of the air, per molecule of air [k].
-
-    Returns
-    -------
-    ndarray
-        Poisson exponent [1]: 2/7 in dry air.
-
-    Raises
-    ------
-    ValueError
-        If an argument is negative.
 
     Examples
     --------
@@ -71,34 +57,24 @@ def moist_air_poisson_exponent(mixing_ratio: ArrayLike, nuclei_heat: ArrayLike =
 def lcl(
     pressure: ArrayLike, temperature: ArrayLike, dewpoint: ArrayLike, nuclei_heat: ArrayLike = 0.0
 ) -> tuple[FloatArray, FloatArray]:
-    r"""Return pressure and temperature of the lifting condensation level, where lifted air becomes saturated.
+    r"""Return pressure [Pa] and temperature [K] of the lifting condensation level, where lifted air becomes saturated.
 
-    The adiabat :math:`e \propto T^{1/\kappa}` meets :math:`e_s(T)`: a closed form with Lambert's function [1]_.
+    The adiabat :math:`e \propto T^{1/\kappa}` meets :math:`e_s(T)`: a closed form with Lambert's function (Romps 2017,
+    doi:10.1175/JAS-D-17-0102.1, equation 22). Both are 0 if the air is dry.
 
     Parameters
     ----------
-    pressure
-        Pressure at the start [Pa].
-    temperature
-        Temperature at the start [K].
+    pressure, temperature
+        Pressure [Pa] and temperature [K] at the start.
     dewpoint
         Dewpoint at the start [K], not above the temperature; 0 K in dry air.
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
 
-    Returns
-    -------
-    pressure, temperature : ndarray
-        Pressure [Pa] and temperature [K] of the cloud base, both 0 if the air is dry.
-
     Raises
     ------
     ValueError
-        If the air is supersaturated, a pressure is not positive, or water boils at the dewpoint at that pressure.
-
-    References
-    ----------
-    .. [1] Romps, D. M. (2017), doi:10.1175/JAS-D-17-0102.1, equation 22.
+        If the air is supersaturated, or water boils at the dewpoint at that pressure.
 
     Examples
     --------
@@ -146,12 +122,16 @@ def parcel_path(
     most_liquid: float = np.inf,
     nuclei_heat: float = 0.0,
 ) -> ParcelPath:
-    r"""Follow a parcel up and down, for example over a mountain, with a cloud that may rain.
+    """Follow a parcel up and down, for example over a mountain, with a cloud that may rain.
 
     While the parcel keeps its water the entropy of air, vapour and liquid is constant; they are at equilibrium. A cloud
     holds at most ``most_liquid``: what condenses beyond that falls out at once, with its entropy. Only this loss is not
     reversed when the parcel sinks. So without a bound a lift is reversible; with a bound of zero it is
-    pseudo-adiabatic, and air that sinks again warms along the dry adiabat, as in a foehn.
+    pseudo-adiabatic, and air that sinks again warms along the dry adiabat, as in a foehn (Emanuel 1994, Atmospheric
+    Convection, sections 4.5 and 4.7).
+
+    The state depends only on the pressure and on the lowest pressure so far. Where it rains ln T is integrated over ln
+    p to a relative 1e-12; elsewhere T is the root of the entropy, to rounding.
 
     Parameters
     ----------
@@ -159,32 +139,15 @@ def parcel_path(
         Pressures in the order in which the parcel meets them, rising or falling [Pa].
     pressure0, temperature0
         Pressure [Pa] and temperature [K] at the start. Air given more water than saturation starts with a cloud.
-    total_water
-        Vapour and liquid at the start, mass per mass of dry air [kg kg^-1].
-    most_liquid
-        Most liquid that the cloud holds [kg kg^-1].
+    total_water, most_liquid
+        Vapour and liquid at the start, and most liquid that the cloud holds, mass per mass of dry air [kg kg^-1].
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
-
-    Returns
-    -------
-    ParcelPath
-        Temperature, vapour, liquid and rain at each pressure.
 
     Raises
     ------
     ValueError
-        If a pressure is not positive, the start is not between 0 K and 647.096 K, water or heat is negative, or the
-        cloud holds so much that it warms the rising air enough to evaporate.
-
-    Notes
-    -----
-    The state depends only on the pressure and on the lowest pressure so far. Where it rains ln T is integrated over
-    ln p to a relative 1e-12; elsewhere T is the root of the entropy, to rounding.
-
-    References
-    ----------
-    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, sections 4.5 and 4.7.
+        If the cloud holds so much that it warms the rising air enough to evaporate.
 
     Examples
     --------
@@ -265,9 +228,11 @@ def raining_path(
 ) -> ParcelPath:
     r"""Follow a parcel up and down whose cloud rains in proportion to its liquid beyond a threshold.
 
-    Liquid l beyond a threshold falls out as :math:`-dl/dt = r \, (l - l_0)` [1]_, and takes its entropy with it.
-    Everything else stays in the parcel, at equilibrium. A rate of zero gives the reversible adiabat; an infinite rate
-    with a threshold of zero gives the pseudo-adiabat.
+    Liquid l beyond a threshold falls out as :math:`-dl/dt = r \, (l - l_0)`, and takes its entropy with it (Kessler
+    1969, doi:10.1007/978-1-935704-36-2_1: autoconversion). Everything else stays in the parcel, at equilibrium. A rate
+    of zero gives the reversible adiabat; an infinite rate with a threshold of zero gives the pseudo-adiabat.
+
+    The rain between two moments is computed from the surplus at the second: the error is of first order in the step.
 
     Parameters
     ----------
@@ -277,33 +242,13 @@ def raining_path(
         The pressures [Pa].
     pressure0, temperature0, total_water
         At the start [Pa, K, kg kg^-1].
-    rate
-        r [1/time].
-    most_liquid
-        The threshold [kg kg^-1].
+    rate, most_liquid
+        r [1/time], and the threshold [kg kg^-1].
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
     scatter
         Standard deviation of the liquid of a small cloud about its equilibrium [kg kg^-1]. A surplus rains, and a
         deficit does not bring it back: so more falls than from a cloud without fluctuations.
-
-    Returns
-    -------
-    ParcelPath
-        Temperature, vapour, liquid and rain at each moment.
-
-    Raises
-    ------
-    ValueError
-        If a pressure, the temperature or a time is not allowed, or water, heat or rate is negative.
-
-    Notes
-    -----
-    The rain between two moments is computed from the surplus at the second: the error is of first order in the step.
-
-    References
-    ----------
-    .. [1] Kessler, E. (1969), doi:10.1007/978-1-935704-36-2_1: autoconversion above a threshold.
 
     Examples
     --------
@@ -344,13 +289,7 @@ def raining_path(
 
 
 def _surplus(mean: float, scatter: float) -> float:
-    r"""Return the mean of the positive part of a normal variable, :math:`m \Phi(m/s) + s \phi(m/s)`.
-
-    Examples
-    --------
-    >>> _surplus(2.0, 0.0), round(_surplus(0.0, 1.0), 3)
-    (2.0, 0.399)
-    """
+    r"""Return the mean of the positive part of a normal variable, :math:`m \Phi(m/s) + s \phi(m/s)`."""
     if not scatter > 0.0:
         return max(mean, 0.0)
     a = mean / scatter

@@ -50,10 +50,8 @@ def square_well_second_virial(temperature: ArrayLike, range: float = 1.5) -> Arr
 
     Parameters
     ----------
-    temperature
-        Temperature T*, above 0.
-    range
-        Reach lambda of the well [diameter].
+    temperature, range
+        Temperature T*, above 0, and reach lambda of the well [diameter].
 
     Examples
     --------
@@ -69,16 +67,15 @@ def square_well_second_virial(temperature: ArrayLike, range: float = 1.5) -> Arr
 def square_well_third_virial(temperature: ArrayLike, range: float = 1.5) -> Array:
     r"""Return the third virial coefficient [diameter^6], for ranges up to 2.
 
-    :math:`B_3 = b_0^2 (5 - c_1 x - c_2 x^2 - c_3 x^3) / 8` with :math:`c_1 = \lambda^6 - 18 \lambda^4 + 32 \lambda^3 -
-    15`, :math:`c_2 = 2 \lambda^6 - 36 \lambda^4 + 32 \lambda^3 + 18 \lambda^2 - 16`, :math:`c_3 = 6 \lambda^6 -
-    18 \lambda^4 + 18 \lambda^2 - 6`.
+    :math:`B_3 = b_0^2 (5 - c_1 x - c_2 x^2 - c_3 x^3) / 8` with
+    :math:`c_1 = \lambda^6 - 18 \lambda^4 + 32 \lambda^3 - 15`,
+    :math:`c_2 = 2 \lambda^6 - 36 \lambda^4 + 32 \lambda^3 + 18 \lambda^2 - 16`,
+    :math:`c_3 = 6 \lambda^6 - 18 \lambda^4 + 18 \lambda^2 - 6` (Kihara 1953, doi:10.1103/RevModPhys.25.831).
 
     Parameters
     ----------
-    temperature
-        Temperature T*, above 0.
-    range
-        Reach lambda of the well, from 1 to 2 [diameter].
+    temperature, range
+        Temperature T*, above 0, and reach lambda of the well, from 1 to 2 [diameter].
 
     Raises
     ------
@@ -216,8 +213,8 @@ SIMPLE_FLUIDS = {
 def well_vapor_pressure(temperature: ArrayLike) -> NDArray[np.float64]:
     r"""Return the vapour pressure of the square well of range 1.5 by published simulations [depth/diameter^3].
 
-    :math:`\ln p = 3.5211 - 7.1939 / T^*`, the line through the pressures of Singh, Kofke and Errington (2003) that the
-    program etomica, of the same group, uses. NaN above the critical temperature.
+    :math:`\ln p = 3.5211 - 7.1939 / T^*`, the line through the pressures of Singh, Kofke and Errington (2003),
+    doi:10.1063/1.1590313, that the program etomica, of the same group, uses. NaN above the critical temperature.
 
     Parameters
     ----------

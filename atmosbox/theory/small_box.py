@@ -51,30 +51,15 @@ def isothermal_vapor_number(water: int, temperature: float, volume: float) -> Va
     r"""Return the distribution of the number of molecules of vapour in a closed box with liquid at fixed temperature.
 
     Each molecule of vapour condenses at the same rate, and molecules leave the liquid, if there is any, at a constant
-    rate. So the number has the Poisson distribution with :math:`\lambda = e_s V / kT`, cut off at all the water.
+    rate. So the number has the Poisson distribution with :math:`\lambda = e_s V / kT`, cut off at all the water (van
+    Kampen 2007, Stochastic Processes in Physics and Chemistry, chapter VI).
 
     Parameters
     ----------
     water
-        Molecules of water, vapour and liquid [1].
-    temperature
-        Temperature of the liquid and of the gas [K].
-    volume
-        Volume of the gas [m^3].
-
-    Returns
-    -------
-    VaporNumber
-        Probabilities, mean and variance.
-
-    Raises
-    ------
-    ValueError
-        If the temperature lies outside 0 to 647.096 K, the volume is not positive or the number negative.
-
-    References
-    ----------
-    .. [1] van Kampen, N. G. (2007), Stochastic Processes in Physics and Chemistry, chapter VI.
+        Molecules of water, vapour and liquid.
+    temperature, volume
+        Temperature of the liquid and of the gas [K], and volume of the gas [m^3].
 
     Examples
     --------
@@ -106,14 +91,13 @@ def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nu
     .. math:: P(N_v) \propto \frac{\zeta^{N_v}}{N_v!} \frac{(E - N_v \varphi)^{M-1}}{\Gamma(M)} , \qquad
               \zeta = \frac{e_s V}{kT}\, (kT)^{c_l - 3} e^{\varphi / kT} ,
 
-    where :math:`\zeta` does not depend on T.
+    where :math:`\zeta` does not depend on T (Weisskopf 1937, doi:10.1103/PhysRev.52.295). A molecule that evaporates
+    cools the others, so the number scatters less than at fixed temperature.
 
     Parameters
     ----------
-    water
-        Molecules of water, vapour and liquid [1].
-    air
-        Molecules of air :math:`N_a` [1].
+    water, air
+        Molecules of water, vapour and liquid, and of air :math:`N_a`.
     energy
         Energy E: kinetic and rotational of the gas, thermal of the liquid, and the binding energy
         :data:`atmosbox.theory.BINDING_TEMPERATURE` times k for each molecule of vapour [J].
@@ -121,24 +105,6 @@ def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nu
         Volume of the gas [m^3].
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the liquid, :math:`C_n` [k].
-
-    Returns
-    -------
-    VaporNumber
-        Probabilities, mean and variance.
-
-    Raises
-    ------
-    ValueError
-        If the energy or the volume is not positive, or a number or a heat capacity negative.
-
-    Notes
-    -----
-    A molecule that evaporates cools the others, so the number scatters less than at fixed temperature.
-
-    References
-    ----------
-    .. [1] Weisskopf, V. (1937), doi:10.1103/PhysRev.52.295.
 
     Examples
     --------
@@ -184,8 +150,9 @@ class IsobaricWater(NamedTuple):
 def isobaric_water(pressure: float, temperature: float, air: int, vapor: int, liquid: int) -> IsobaricWater:
     r"""Return the equilibrium of air, vapour and liquid at constant pressure, without heat exchange.
 
-    Each division of the enthalpy, and each volume, has a probability proportional to its number of states. With
-    :math:`\varphi` for every molecule outside the liquid and :math:`M = c_{pd} N_a + c_{pv} N_v + c_l n`,
+    Each division of the enthalpy, and each volume, has a probability proportional to its number of states (Andersen
+    1980, doi:10.1063/1.439486; Weisskopf 1937, doi:10.1103/PhysRev.52.295). With :math:`\varphi` for every molecule
+    outside the liquid and :math:`M = c_{pd} N_a + c_{pv} N_v + c_l n`,
 
     .. math:: P(N_v) \propto \frac{(N_a + N_v)!}{N_v!} \left( \frac{\zeta}{p} \right)^{N_v}
               \frac{(H - N_v \varphi)^M}{\Gamma(M + 1)} , \qquad
@@ -193,34 +160,15 @@ def isobaric_water(pressure: float, temperature: float, air: int, vapor: int, li
 
     where :math:`\zeta` does not depend on T. At each number the mean temperature is :math:`(H - N_v \varphi) / M`.
 
-    Parameters
-    ----------
-    pressure
-        Pressure of the gas p [Pa].
-    temperature
-        Temperature of air, vapour and liquid at the start [K].
-    air, vapor, liquid
-        Molecules of air :math:`N_a`, of vapour and of liquid at the start [1].
-
-    Returns
-    -------
-    IsobaricWater
-        Probabilities of the number of molecules of vapour, and means.
-
-    Raises
-    ------
-    ValueError
-        If the pressure or the temperature is not positive, a number is negative, or there are no molecules.
-
-    Notes
-    -----
     For a large parcel :func:`atmosbox.theory.evaporation_equilibrium` gives the same. In a small one a molecule that
     evaporates cools all the others, and sometimes the whole pool evaporates.
 
-    References
+    Parameters
     ----------
-    .. [1] Andersen, H. C. (1980), doi:10.1063/1.439486: the ensemble of constant enthalpy and pressure.
-    .. [2] Weisskopf, V. (1937), doi:10.1103/PhysRev.52.295.
+    pressure, temperature
+        Pressure of the gas p [Pa], and temperature of air, vapour and liquid at the start [K].
+    air, vapor, liquid
+        Molecules of air :math:`N_a`, of vapour and of liquid at the start.
 
     Examples
     --------

@@ -23,7 +23,8 @@ _SHAPES = 8
 def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
     r"""Return the mutual diffusion coefficient of thin gases of hard spheres over its first approximation.
 
-    The first approximation of Chapman and Enskog does not depend on the composition; the whole series does.
+    The first approximation of Chapman and Enskog does not depend on the composition; the whole series does (Chapman and
+    Cowling 1970, The Mathematical Theory of Non-uniform Gases, chapters 8 and 9).
 
     Parameters
     ----------
@@ -32,14 +33,11 @@ def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
     share
         Share of the molecules that belong to the first gas, above 0 and below 1.
 
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases, chapters 8 and 9.
-
     Examples
     --------
-    For equal molecules it is 1.0190. For a trace of light molecules among heavy ones it is 1.132, or :math:`32 / 9 \pi`
-    [1]_, and this series lacks a hundredth of that; for a trace of heavy molecules among light ones it is 1:
+    For equal molecules it is 1.0190. For a trace of light molecules among heavy ones it is 1.132, or
+    :math:`32 / 9 \pi`, and this series lacks a hundredth of that; for a trace of heavy molecules among light ones it is
+    1:
 
     >>> round(diffusivity_factor((1.0, 1.0)), 4), round(diffusivity_factor((1e-4, 1.0), 1e-6), 3)
     (1.019, 1.124)
@@ -54,16 +52,18 @@ def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
 
 
 def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike) -> FloatArray:
-    r"""Return how a wave of the composition of two gases, half of each, decays from the height 1.
+    r"""Return how a wave of the composition of two gases, half of each, decays from the height 1, (time,).
 
     Both densities vary as :math:`\cos kx` with opposite signs, at constant pressure and temperature. For equal
     molecules the wave decays as :math:`e^{-D k^2 t}`. With unlike molecules the diffusion carries heat (Dufour's
     effect), so that the wave is the sum of two waves, one of which decays more slowly than by D alone; and as the light
-    molecules are faster, the gas starts to oscillate. All this is contained in the linear Boltzmann equation
+    molecules are faster, the gas starts to oscillate. All this is contained in the linear Boltzmann equation (Chapman
+    and Cowling 1970, section 8.41)
 
     .. math:: \partial_t \varphi + i k c_z \varphi = -C \varphi
 
-    which is solved here with polynomials of the energy and spherical harmonics of the direction.
+    which is solved here with polynomials of the energy and spherical harmonics of the direction. A dense gas has g
+    times as many collisions; use g n for n.
 
     Parameters
     ----------
@@ -73,19 +73,6 @@ def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike)
         The wave number k [:math:`n \sigma^2`].
     times : (time,)
         Time since the beginning [:math:`\sqrt{m / kT} / n \sigma^2`].
-
-    Returns
-    -------
-    array (time,)
-        The height of the wave.
-
-    Notes
-    -----
-    A dense gas has g times as many collisions; use g n for n.
-
-    References
-    ----------
-    .. [1] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases, section 8.41.
 
     Examples
     --------

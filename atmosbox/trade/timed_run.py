@@ -32,7 +32,7 @@ _TEMPERATURES = ("K", "degC")
 
 @dataclass(frozen=True)
 class Way:
-    """One way of running a scene: an engine with its options, and settings.
+    """One way of running a scene.
 
     Parameters
     ----------
@@ -40,10 +40,8 @@ class Way:
         The engine with its options.
     settings
         The settings that differ from the scene's defaults.
-    series
-        Index of its series in the scene.
-    value
-        Its value of the setting or option that varies in the series.
+    series, value
+        Index of its series in the scene, and its value of the setting or option that varies in the series.
     """
 
     engine: str
@@ -64,13 +62,7 @@ class Way:
 
     @property
     def kernels(self) -> str:
-        """Text that tells what is compiled: the engine, and the settings that are not numbers.
-
-        Examples
-        --------
-        >>> Way("stepped:delta=0.1", {"plane": True, "duration": 50.0}).kernels
-        'stepped plane=True'
-        """
+        """Text that tells what is compiled: the engine, and the settings that are not numbers."""
         words = sorted(f"{name}={value}" for name, value in self.settings.items() if isinstance(value, bool | str))
         return " ".join([self.engine.partition(":")[0], *words])
 
@@ -78,12 +70,7 @@ class Way:
 def ways_of(series: Sequence[Series], settings: Mapping[str, Any]) -> tuple[Way, ...]:
     """Return the ways of running a scene that some series name.
 
-    Parameters
-    ----------
-    series
-        The series.
-    settings
-        The user's settings for all series; a series overrides them by its own settings and its varied setting.
+    The user's settings count for all series; a series overrides them by its own settings and its varied setting.
 
     Raises
     ------
@@ -146,13 +133,7 @@ def compile_way(scene: str, way: Way) -> None:
 
 
 def run(scene: str, way: Way, seed: int, progress: Callable[[float, str], None] | None = None) -> Trial:
-    """Run a scene once in one way with a seed, and return the errors and the cost.
-
-    Raises
-    ------
-    AtmosboxError
-        If the engine refuses the scene, or cannot go on.
-    """
+    """Run a scene once in one way with a seed, and return the errors and the cost."""
     prepared = runner.prepare(scene, {**way.settings, "seed": seed}, engine=way.engine)
     return _trial(runner.execute(prepared, progress=progress), prepared.settings)
 
@@ -209,31 +190,12 @@ def repeat(
     ended: Callable[[], None] = lambda: None,
     clock: Callable[[], float] = time.perf_counter,
 ) -> list[str]:
-    """Run all ways of doing something as often as a budget of time allows, those with the fewest runs first.
+    """Run all ways of doing something as often as a budget of time [s] allows, those with the fewest runs first.
 
     A run that takes too long is stopped. As long as there is no result at all, a run may take the whole budget,
-    whatever was spent on others.
-
-    Parameters
-    ----------
-    budget
-        Time for everything [s].
-    results
-        The results of each way, to which new ones are added.
-    run
-        Called with the number of a way and a function that takes the share that is done and the word "running";
-        returns the result.
-    tell
-        Called with the share of the budget that is spent and the number of the present way.
-    ended
-        Called after each run.
-    clock
-        Returns the time [s].
-
-    Returns
-    -------
-    list of str
-        For each way, why it has no result, or why its runs failed; empty if there is nothing to say.
+    whatever was spent on others. ``run`` gets the number of a way and a function that takes the share that is done and
+    the word "running"; its result is added to the ``results`` of the way. ``tell`` gets the share of the budget that is
+    spent and the number of the present way. Returned is, for each way, why it has no result or why its runs failed.
     """
     began = clock()
     seconds = [0.0] * len(results)  # the time of a run, as far as it is known
