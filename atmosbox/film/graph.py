@@ -128,7 +128,7 @@ def drawer(dataset: xr.Dataset, look: Theme) -> Draw:
 
 
 class Graph:
-    """The curves of one panel up to a frame, on axes on which the function of `drawer` has drawn."""
+    """The curves of one panel up to a frame; the function of `drawer` has drawn the axes before."""
 
     def __init__(self, axes: Axes, panel: Panel, dataset: xr.Dataset, look: Theme, running: Running) -> None:
         self.axes, self.panel, self.dataset, self.running = axes, panel, dataset, running

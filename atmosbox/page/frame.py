@@ -93,7 +93,7 @@ def places(water: int) -> Floats:
 
 
 def layer(number: int, water: int, *, rain: bool = False) -> Floats:
-    """Return the liquid on the floor as a drop, (1, 4), or (0, 4) without any: its level from 0 to 1 stands for z.
+    """Return the liquid on the floor as a drop, (1, 4), with its level from 0 to 1 in place of z; (0, 4) without any.
 
     A negative radius tells whether it is a `POOL` or fallen `RAIN`.
     """

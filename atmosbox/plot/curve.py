@@ -18,7 +18,7 @@ __all__ = ["convert", "labelled", "of_difference", "power_of_ten", "spelled"]
 def convert(
     value: ArrayLike, unit: str, shown: str, *, name: str = "value", difference: bool = False
 ) -> NDArray[np.float64]:
-    """Convert a quantity from the units of the file to the units that are shown; none are given for those of the file.
+    """Convert a quantity from the units of the file to those that are shown, which are the same if none are given.
 
     No offset is added to a difference or an error: a difference of 10 K is one of 10 degC.
 

@@ -195,11 +195,6 @@ def rained_temperature(
     """Return the temperature of saturated air with a constant amount of liquid, along pressures that rise or fall.
 
     The water that condenses leaves with its entropy. Runge-Kutta method of order 8 for ln T over ln p.
-
-    Raises
-    ------
-    ValueError
-        If the air would be above the critical point of water.
     """
     from scipy import integrate  # loads slowly
 
