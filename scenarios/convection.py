@@ -1,22 +1,22 @@
-"""Why warm air rises: over a warm floor and below a cold ceiling, air begins to turn over.
+"""Why warm air rises: between a warm floor and a cold ceiling air begins to turn over.
 
 Thousands of hard discs fly in a tall box with gravity, in a plane as on a screen. The floor is hot, the ceiling cold.
-At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter, and after
-some minutes it rises in a plume, spreads below the ceiling, cools, and sinks at the sides: two rolls of wind. This is
-not prescribed: there is no parcel and no prescribed ascent in this box.
+At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter. After some
+minutes it rises in plumes, spreads below the ceiling, cools, and sinks beside them: the air turns in rolls. This is not
+prescribed: there is no parcel and no prescribed ascent in this box.
 
 Air that rises expands and cools, by the adiabatic lapse rate. It is still warmer than its new environment only if the
 temperature there falls faster with height. Even then viscosity and conduction must be weak enough. Once the air turns
 over, the core cools less with height than it did at rest: it is mixed.
 
-With ``case`` the same box shows an inversion (a floor colder than the ceiling: what is released at the floor stays
-there), a sea-breeze (one side warm, the other cold: wind from the first moment on), or stable air (the same
-difference of temperature with more gravity: it stays at rest).
+With ``case`` the same box shows an inversion (the floor is colder than the ceiling: smoke from a chimney stays low), a
+sea breeze (one side is warm, the other cold: wind from the first moment on), or stable air (the same difference of
+temperature with more gravity: the air stays at rest).
 
 Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, one cell deep,
 that may rotate. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water, radiation, the
-rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km, because a box only about a
-hundred molecules high is so viscous that air under a real lapse rate would stay at rest in it.
+rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km. The box is only about a
+hundred molecules high; its air is so viscous that with a real lapse rate it would stay at rest.
 """
 
 import functools
@@ -121,7 +121,9 @@ not_measured = "where fewer molecules make another flow, not a less accurate one
 class Settings(SceneSettings):
     """What a user may set."""
 
-    case: str = setting("rolls", "", "which box: its other settings have their defaults from it", choices=tuple(CASES))
+    case: str = setting(
+        "rolls", "", "which box to run; it sets the defaults of the other settings", choices=tuple(CASES)
+    )
     molecules: int = setting(7300, "1", "number of molecules", low=50, high=1_000_000)
     floor_temperature: float = setting(
         270.0, "degC", "temperature of the floor, or of the warm side", low=-270.0, high=2000.0
@@ -149,7 +151,7 @@ class Settings(SceneSettings):
     tracers: str = setting(
         "floor",
         "",
-        "which molecules are followed from half of the run on: those near the floor, or above a chimney in its middle",
+        "which molecules are marked half-way through the run: those near the floor, or above a chimney in its middle",
         choices=("floor", "chimney"),
     )
     rotation: bool = setting(False, "", "whether spheres rotate, as molecules of air do; on the engine dsmc")

@@ -1,16 +1,16 @@
 """A parcel of dry air rises and cools.
 
-Some thousand molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure
-in the box follows that of the environment, as the parcel rises. Nothing cools the molecules but this:
-those that hit the receding ceiling come back more slowly. Prescribed are the pressure at each moment and the two
-rotational degrees of freedom of a molecule; the dry adiabat, T ~ p^(2/7), emerges.
+Some thousand molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure in the box
+follows that of the environment of a rising parcel. Only one thing cools the molecules: those that hit the receding
+ceiling come back more slowly. Prescribed are the pressure at each moment and the two rotational degrees of freedom of a
+molecule; the dry adiabat, T ~ p^(2/7), emerges.
 
-Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact;
-smooth walls; a hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it
-would change its temperature by less than a billionth), water, mixing with the environment, heat from it.
-Exaggerated: the molecules are larger than those of air, so that they meet often, and the parcel rises nine
-kilometres within nanoseconds. Because the ascent is not infinitely slow, the parcel is too warm at 300 hPa: by about
-155 K divided by the duration of the ascent in mean free times, which is 0.1 K in the default run.
+Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact; smooth walls; a
+hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it would change its temperature by
+less than a billionth), water, mixing and exchange of heat with the environment. Exaggerated: the molecules are larger
+than those of air, so that they meet often, and the parcel rises nine kilometres within nanoseconds. Because the ascent
+is not infinitely slow, the parcel is too warm at 300 hPa: by about 155 K divided by the duration of the ascent in mean
+free times, which is 0.1 K in the default run.
 """
 
 import math

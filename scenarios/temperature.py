@@ -7,8 +7,8 @@ the walls add up to the pressure n k T Z, where Z is a little more than 1 becaus
 
 Modelled: hard spheres of the mass and the diameter of air, which leave the walls with random velocities. Left out:
 gravity (over twenty nanometres its effect is too small to be seen), rotation (it does not change how fast molecules
-fly), and that air is a mixture. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K
-for two hundred.
+fly), and the different molecules of air. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the
+temperature, 17 K for two hundred.
 """
 
 import math
