@@ -104,7 +104,7 @@ def atmosphere() -> list[list[str]]:
     return [
         ["sunshine, radiation, wind", f"{isothermal / 100.0:.0f} hPa at 10 km, in the standard atmosphere "
          f"{standard / 100.0:.0f} hPa: {rounded(100.0 * (isothermal / standard - 1.0))} %"],
-        ["air above the ceiling", f"the ceiling replaces it: it pushes back with the "
+        ["air above the ceiling", f"the ceiling replaces it: it pushes back with "
          f"{rounded(si.surface_pressure * math.exp(-air.height) / 100.0)} hPa, the weight of this air"],
         ["gravity falls with height", f"the air weighs {rounded(200.0 * held / EARTH)} % too much"],
         ["air is a mixture", f"at rest N₂ would have a scale height of {own['N2']:.2f} km and O₂ of {own['O2']:.2f} "
@@ -199,14 +199,14 @@ def moist() -> list[list[str]]:
     known = finite_size.drift(ascent, ideal=False)
     clusters = float(known.clusters[np.argmin(np.abs(known.pressure - base))])
     return [
-        ["mixing with the environment", "the largest difference between a parcel and a cloud: in a simulated cumulus "
-         "the air above 2 km comes on average from well above the cloud base (Yeo and Romps 2013, "
+        ["mixing with the environment", "the largest difference between this parcel and a cloud: in a simulated "
+         "cumulus the air above 2 km comes on average from well above the cloud base (Yeo and Romps 2013, "
          "[doi:10.1175/JAS-D-12-0144.1](https://doi.org/10.1175/JAS-D-12-0144.1))"],
         ["ice", f"if all {rounded(1000.0 * liquid)} g/kg of liquid froze at {top / 100.0:.0f} hPa and "
-         f"{end - 273.15:.0f} °C, with {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
+         f"{end - 273.15:.0f} °C, at {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
          f"{rounded(frozen)} K warmer"],
-        ["rain (at the default)", f"the pseudo-adiabat ends {rounded(float(pseudo.temperature[0]) - end)} K from the "
-         "reversible one, with `rain=on` nearly so"],
+        ["rain (at the default)", f"the pseudo-adiabat ends {rounded(end - float(pseudo.temperature[0]))} K colder "
+         "than the reversible one; a run with `rain=on` ends nearly as cold"],
         ["the weight of the droplets", f"lowers the buoyancy as if the parcel were {rounded(end * liquid)} K "
          "colder; the temperature stays the same"],
         ["supersaturation in an updraft", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
