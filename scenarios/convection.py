@@ -328,7 +328,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     steep = (settings.si.floor_temperature - settings.si.ceiling_temperature) / settings.height
     lapse = float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * scale.temperature / scale.length
     fastest = float(np.max(box.growth((box.floor, box.ceiling), box.gravity)))
-    # the time in which a box of this height conducts a difference away
+    # the time in which conduction removes a difference of temperature in a box of this height
     spread = float(box.gas.conductivity(box.density, 1.0)) / (box.density * (0.5 * box.gas.freedom + 1.0))
     memory = box.height**2 / (math.pi**2 * spread)
     kind = "spheres of an ideal gas" if box.thin else f"discs {scale.length:.0f} m wide"
@@ -377,7 +377,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the air at rest, the adiabat through the middle of the height, and how rolls begin to grow."""
+    """Return the air at rest, the adiabat through the middle of the height, and the growth of weak rolls."""
     box = Box(settings, used(dataset))
     kT, pull = box.now(dataset)
     rest = box.rest(kT, pull)
@@ -386,7 +386,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     found = {"layer_temperature_conduction": np.interp(height, rest.height * metre, rest.temperature) * kelvin}
     if "layer_temperature" in dataset:
         density = dataset.number_density.values / box.scale.number_density
-        # the adiabat: by how much it falls from layer to layer, laid through the temperature measured half-way up
+        # the adiabat: its lapse rate, summed from layer to layer, through the temperature measured half-way up
         steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * kelvin / metre
         fallen = np.concatenate([[0.0], np.cumsum(0.5 * (steps[1:] + steps[:-1]) * np.diff(height))])
         middle = 0.5 * settings.si.height
@@ -422,14 +422,14 @@ def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return lapse rate, wind, heat and weight of the air, what rose from the floor, and the growth of rolls."""
+    """Return weight, lapse rate, heat and wind of the air, the share of marked molecules aloft, and growth of rolls."""
     box = Box(settings, used(dataset))
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < LEAST:
         return ()
     kT, pull = box.now(dataset)
     rest = box.rest(kT, pull)
-    # where air is unstable and only too viscous to turn over, buoyancy makes the noise of rolls stronger
+    # in unstable air that is too viscous to turn over buoyancy amplifies the noise of rolls, so it has no theory here
     still = box.thin and not box.beside and law.rayleigh_number(rest) <= 0.0
     found = [_weight(late, dataset, box)]
     if box.beside:
@@ -473,7 +473,7 @@ def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
 def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> tuple[Headline, ...]:
     """Return the lapse rate of the core, and the Nusselt number, which is 1 in air at rest.
 
-    The lapse rate of air at rest has no theory good enough: below the cold ceiling mean free paths are so long that
+    No theory of the lapse rate of air at rest is good enough: below the cold ceiling mean free paths are so long that
     Fourier's law does not hold.
     """
     steep = overlapping_average(late.core_lapse_rate.values, BLOCKS)
@@ -529,10 +529,10 @@ def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecu
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the temperature (or the wind) against height, the rolls and what rose from the floor against time."""
+    """Return the panels of temperature (or wind) against height, and of the rolls against time."""
     if settings.sides == "warm-and-cold":
         profile = Panel(
-            "profile", "Below it blows to the warm side, above it back",
+            "profile", "Wind to the warm side below, back above",
             (Line("layer_wind", "height", "wind", error="layer_wind_se"),),
             x_label="wind away from the warm side", x_unit="m s-1", y_label="height", y_unit="km",
             headlines=("onshore_wind", "return_wind"),

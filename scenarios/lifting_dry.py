@@ -82,7 +82,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
-    """Return the scale, and density, sides within reach of the centres, and (Z - 1) / n at the start, in diameters."""
+    """Return the scale; and at the start, in diameters, density, sides that centres can reach, and (Z - 1) / n."""
     si = settings.si
     scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
     return scale, *size_of_parcel(scale, settings.molecules, si.pressure, ideal=ideal)
@@ -191,7 +191,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     ascent, spheres = _ascent(settings), 0.0 if used(dataset).ideal else 1.0
 
     def at(level: float) -> tuple[float, float, float]:
-        """Return the temperature measured where the parcel has a pressure [Pa], its error, and that of theory [K]."""
+        """Return the temperature measured at a pressure of the parcel [Pa], its error, and that of theory [K]."""
         adiabat = float(law.dry_adiabat_temperature(level, si.temperature, si.pressure, freedom))
         known = adiabat * (ascent.finite_speed(level) - spheres * ascent.room(level, density))
         found, chance = (float(np.interp(level, pressure[order], each)) for each in (warmer, error))
