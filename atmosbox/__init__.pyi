@@ -507,11 +507,11 @@ def run(
 
     molecules: number of molecules that attract each other; 50 to 20000
     temperature [K]: temperature of the thermostat and at the start; 10 K to 20000 K
-    density: density of these molecules, divided by the critical density; 0.0001 to 2.3
+    density: density of these molecules / critical density; 0.0001 to 2.3
     attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
     start: state at the start; vapour or slab or drop or pool
     bath: what keeps the temperature; random or walls or none
-    air: density of molecules without attraction, divided by the critical density; 0 to 1
+    air: density of molecules without attraction / critical density; 0 to 1
     substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
     heating [K ns-1]: how fast the thermostat becomes warmer; 0 for a constant temperature; 0 K ns-1 to 1000 K ns-1
     duration [ns]: how long to watch; 0.0001 ns to 10000 ns

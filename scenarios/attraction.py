@@ -103,15 +103,11 @@ class Settings(SceneSettings):
 
     molecules: int = setting(800, "1", "number of molecules that attract each other", low=50, high=20_000)
     temperature: float = setting(105.0, "K", "temperature of the thermostat and at the start", low=10.0, high=20_000.0)
-    density: float = setting(
-        0.26, "1", "density of these molecules, divided by the critical density", low=1e-4, high=2.3
-    )
+    density: float = setting(0.26, "1", "density of these molecules / critical density", low=1e-4, high=2.3)
     attraction: float = setting(1.0, "1", "strength of the attraction; at 0 nothing condenses", low=0.0, high=1.0)
     start: str = setting("vapour", "", "state at the start", choices=("vapour", "slab", "drop", "pool"))
     bath: str = setting("random", "", "what keeps the temperature", choices=("random", "walls", "none"))
-    air: float = setting(
-        0.0, "1", "density of molecules without attraction, divided by the critical density", low=0.0, high=1.0
-    )
+    air: float = setting(0.0, "1", "density of molecules without attraction / critical density", low=0.0, high=1.0)
     substance: str = setting(
         "argon",
         "",

@@ -121,9 +121,7 @@ not_measured = "where fewer molecules make another flow, not a less accurate one
 class Settings(SceneSettings):
     """What a user may set."""
 
-    case: str = setting(
-        "rolls", "", "which box to run; it sets the defaults of the other settings", choices=tuple(CASES)
-    )
+    case: str = setting("rolls", "", "which box to run; it sets the other defaults", choices=tuple(CASES))
     molecules: int = setting(7300, "1", "number of molecules", low=50, high=1_000_000)
     floor_temperature: float = setting(
         270.0, "degC", "temperature of the floor, or of the warm side", low=-270.0, high=2000.0
