@@ -239,7 +239,7 @@ def run(
 ) -> RunDataset:
     r"""Why warm air rises: between a warm floor and a cold ceiling air begins to turn over.
 
-    case: which box to run; it sets the defaults of the other settings; rolls or inversion or sea-breeze or stable
+    case: which box to run; it sets the other defaults; rolls or inversion or sea-breeze or stable
     molecules: number of molecules; 50 to 1000000
     floor_temperature [degC]: temperature of the floor, or of the warm side; -270 degC to 2000 degC
     ceiling_temperature [degC]: temperature of the ceiling, or of the cold side; -270 degC to 2000 degC
