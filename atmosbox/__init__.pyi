@@ -93,7 +93,7 @@ def run(
     duration: float | str = 60.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Discs of unlike mass collide in a plane, and share their energy.
+    r"""Discs of different mass collide in a plane and share their energy.
 
     molecules: number of discs; 2 to 5000
     mass_ratio: largest possible ratio of two masses; 1 to 1000000
@@ -237,9 +237,9 @@ def run(
     duration: float | str = 1000.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Why warm air rises: over a warm floor and below a cold ceiling, air begins to turn over.
+    r"""Why warm air rises: between a warm floor and a cold ceiling air begins to turn over.
 
-    case: which box: its other settings have their defaults from it; rolls or inversion or sea-breeze or stable
+    case: which box to run; it sets the other defaults; rolls or inversion or sea-breeze or stable
     molecules: number of molecules; 50 to 1000000
     floor_temperature [degC]: temperature of the floor, or of the warm side; -270 degC to 2000 degC
     ceiling_temperature [degC]: temperature of the ceiling, or of the cold side; -270 degC to 2000 degC
@@ -250,7 +250,7 @@ def run(
     packing: share of the plane that discs cover; 0.01 to 0.5
     sides: the sides: smooth, periodic, or warm on the left and cold on the right with smooth floor and ceiling; smooth or periodic or warm-and-cold
     start: the air at the start: at rest between floor and ceiling, or mixed, of one density and temperature; at-rest or mixed
-    tracers: which molecules are followed from half of the run on: those near the floor, or above a chimney in its middle; floor or chimney
+    tracers: which molecules are marked half-way through the run: those near the floor, or above a chimney in its middle; floor or chimney
     rotation: whether spheres rotate, as molecules of air do; on the engine dsmc; on or off
     duration [s]: how long to watch; 1 s to 1000000 s
     seed: seed of the random numbers; 0 to 9223372036854775807
@@ -309,7 +309,7 @@ def run(
     duration: float | str = 40.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Clouds form where more vapour meets water than leaves it.
+    r"""Clouds form where more molecules of water condense than evaporate.
 
     molecules: number of molecules of air and vapour; 50 to 1000000
     temperature [degC]: temperature of the walls; -60 degC to 95 degC
@@ -346,7 +346,7 @@ def run(
     duration: float | str = 150.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
+    r"""Why clouds need dust: small drops of pure water evaporate even in supersaturated air.
 
     molecules: number of molecules of air and vapour; 50 to 1000000
     temperature [degC]: temperature of the walls and of the drops; -30 degC to 95 degC
@@ -503,15 +503,15 @@ def run(
     duration: float | str = 1.6,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Molecules that only attract each other form a liquid.
+    r"""Attraction between molecules is enough to form a liquid.
 
     molecules: number of molecules that attract each other; 50 to 20000
     temperature [K]: temperature of the thermostat and at the start; 10 K to 20000 K
-    density: density of these molecules, over the critical one; 0.0001 to 2.3
+    density: density of these molecules / critical density; 0.0001 to 2.3
     attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
     start: state at the start; vapour or slab or drop or pool
     bath: what keeps the temperature; random or walls or none
-    air: density of molecules that attract none, over the critical one; 0 to 1
+    air: density of molecules without attraction / critical density; 0 to 1
     substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
     heating [K ns-1]: how fast the thermostat becomes warmer; 0 for a constant temperature; 0 K ns-1 to 1000 K ns-1
     duration [ns]: how long to watch; 0.0001 ns to 10000 ns

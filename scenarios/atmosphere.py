@@ -1,25 +1,24 @@
 """Why the air does not fly away, and why it thins with height.
 
-Ten thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the
-floor. They fall, and within ten minutes density and pressure decrease with height by the barometric law, by a factor
-e every 8.4 km; the means leave out the first half hour. Each molecule falls freely between collisions, and yet the air
-neither collects on the floor nor escapes. The molecules hit the floor, and the force on the floor minus that on the
-ceiling is the weight of the air.
+Ten thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the floor. They
+fall, and within ten minutes density and pressure decrease with height by the barometric law: by a factor e every 8.4
+km. The means leave out the first half hour. Each molecule falls freely between collisions, and yet the air neither
+collects on the floor nor escapes. The molecules hit the floor, and the force on the floor minus that on the ceiling is
+the weight of the air.
 
-The temperature becomes the same at all heights, because the air is left alone. A molecule that rises loses
-speed, but only fast ones get high: fewer arrive, and their mean energy is the same. A real atmosphere is heated from
-below: it turns over, and therefore cools with height. Left alone, without sun and radiation, it would become
-isothermal like this one in some 100,000 years. The figure shows both. The scene ``convection`` heats the air from
-below.
+The temperature becomes the same at all heights, because the air is left alone. A molecule that rises loses speed, but
+only fast ones get there: fewer arrive, with the same mean energy. A real atmosphere is heated from below: it turns
+over, and therefore cools with height. Left alone, without sun and radiation, it would become isothermal like this one
+in some 100,000 years. The figure shows both. The scene ``convection`` heats the air from below.
 
 Modelled: molecules in uniform gravity on exact parabolas, periodic sides, a floor that is a heat bath or smooth, a
 smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Up to 5,000 molecules are
 hard spheres; with more, chance decides which of them collide, as often as spheres would. Left out: water, wind,
 sunshine. Each molecule stands for 10^33 or more real ones and is 70 metres or more wide, so that its mean free path is
-a stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it becomes for
-molecules so wide: hard ones exclude volume from each other, and no centre comes nearer to floor or ceiling than its
-radius, so that a part of the lowest and of the highest layer is empty. With ``plane`` the air is discs in a plane, and
-a slab one scale height thick stands for the third dimension.
+a given share of the scale height (the Knudsen number). Theory is the barometric law, corrected for such wide molecules:
+hard ones exclude volume, and no centre comes nearer to floor or ceiling than the radius of a molecule, so that a part
+of the lowest and of the highest layer is empty. With ``plane`` the air consists of discs in a plane, which stands for a
+slab one scale height thick.
 """
 
 import math

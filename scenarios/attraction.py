@@ -1,19 +1,18 @@
-"""Molecules that only attract each other form a liquid.
+"""Attraction between molecules is enough to form a liquid.
 
 Prescribed are the size of a molecule of argon and its attraction to neighbours: no liquid, no vapour pressure, no
 latent heat, no surface. Two molecules that come within one and a half diameters gain the depth of a square well as
 kinetic energy; to separate, they must give it back. In a dense, cold vapour that is enough: they gather in drops, the
 drops merge, and the energy released warms the vapour.
 
-Modelled: hard spheres with a square well of range 1.5, whose diameter and depth give it the critical point of argon
-(or nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. What is seen is therefore
-like argon: its vapour pressure is a third too low at 105 K and a sixth at 142 K, its latent heat an eighth too large
-at 111 K and a fifth at 142 K. It is not water, whose critical temperature is four times as high, mostly because of
-hydrogen bonds, which have directions and which this model lacks. But its vapour pressure follows a law of the same
-shape.
+Modelled: hard spheres with a square well of range 1.5, whose diameter and depth give it the critical point of argon (or
+nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. So the substance is like argon:
+its vapour pressure is a third too low at 105 K and a sixth at 142 K, its latent heat an eighth too large at 111 K and a
+fifth at 142 K. It is not like water. The critical temperature of water is four times as high, mostly because of
+hydrogen bonds, which this model does not have. But the vapour pressure of both follows a law of the same form.
 
 At the start of the default run there is several times as much vapour as is stable: it is cooled so suddenly that drops
-form everywhere at once, and merge (a quench). A vapour that is barely supersaturated waits for one rare nucleus.
+form everywhere at once, and merge (a quench). In a vapour that is barely supersaturated the first drop forms far later.
 
 With ``heating`` the thermostat around a drop becomes warmer, and the heat that it gives is counted: the temperature
 rises, hardly rises while the drop evaporates, and rises again. Other defaults then apply: 400 molecules, a drop at
@@ -104,11 +103,11 @@ class Settings(SceneSettings):
 
     molecules: int = setting(800, "1", "number of molecules that attract each other", low=50, high=20_000)
     temperature: float = setting(105.0, "K", "temperature of the thermostat and at the start", low=10.0, high=20_000.0)
-    density: float = setting(0.26, "1", "density of these molecules, over the critical one", low=1e-4, high=2.3)
+    density: float = setting(0.26, "1", "density of these molecules / critical density", low=1e-4, high=2.3)
     attraction: float = setting(1.0, "1", "strength of the attraction; at 0 nothing condenses", low=0.0, high=1.0)
     start: str = setting("vapour", "", "state at the start", choices=("vapour", "slab", "drop", "pool"))
     bath: str = setting("random", "", "what keeps the temperature", choices=("random", "walls", "none"))
-    air: float = setting(0.0, "1", "density of molecules that attract none, over the critical one", low=0.0, high=1.0)
+    air: float = setting(0.0, "1", "density of molecules without attraction / critical density", low=0.0, high=1.0)
     substance: str = setting(
         "argon",
         "",
@@ -276,7 +275,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             f"{scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
             "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
-            "units": f"of time {scale.time * 1e12:.2f} ps, of pressure {round(scale.pressure / 1e2, -3):.0f} hPa",
+            "units": f"time {scale.time * 1e12:.2f} ps, pressure {round(scale.pressure / 1e2, -3):.0f} hPa",
             "not water": "the critical temperature of water is four times as high (hydrogen bonds are not modelled)",
         },
         knobs=tuple(knobs),

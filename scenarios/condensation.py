@@ -1,14 +1,14 @@
-"""Clouds form where more vapour meets water than leaves it.
+"""Clouds form where more molecules of water condense than evaporate.
 
-Moist air of real density between walls of one temperature, with more vapour than saturated air has. Two things are
+Moist air of real density is between walls of one temperature, with more vapour than saturated air has. Two things are
 counted: the molecules of vapour that meet liquid and stay, and those that leave it. The first rate falls while vapour
 is used up, the second depends on the liquid alone; when the two are equal, the air is saturated, and the relative
 humidity is 100 %.
 
-Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and that the
-air has no influence on it. That the two rates become equal in a closed box follows from the conservation of molecules.
-The run tests the vapour pressure at which this happens: it must be e_s(T). It also shows how long it takes, and how
-much so few molecules scatter.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities. The air has
+no influence on it. In a closed box the two rates become equal because no molecule is lost. The run tests the vapour
+pressure at which this happens: it must be e_s(T). It also shows how long this takes, and how much the numbers of so few
+molecules fluctuate.
 
 Modelled: hard molecules of air and water at real density; droplets too fine to draw, of one temperature and a
 given area; every molecule of vapour that meets a droplet sticks to it. Left out: ice, the curvature of droplets and

@@ -1,22 +1,22 @@
-"""Why warm air rises: over a warm floor and below a cold ceiling, air begins to turn over.
+"""Why warm air rises: between a warm floor and a cold ceiling air begins to turn over.
 
 Thousands of hard discs fly in a tall box with gravity, in a plane as on a screen. The floor is hot, the ceiling cold.
-At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter, and after
-some minutes it rises in a plume, spreads below the ceiling, cools, and sinks at the sides: two rolls of wind. This is
-not prescribed: there is no parcel and no prescribed ascent in this box.
+At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter. After some
+minutes it rises in plumes, spreads below the ceiling, cools, and sinks beside them: the air turns in rolls. This is not
+prescribed: there is no parcel and no prescribed ascent in this box.
 
 Air that rises expands and cools, by the adiabatic lapse rate. It is still warmer than its new environment only if the
 temperature there falls faster with height. Even then viscosity and conduction must be weak enough. Once the air turns
 over, the core cools less with height than it did at rest: it is mixed.
 
-With ``case`` the same box shows an inversion (a floor colder than the ceiling: what is released at the floor stays
-there), a sea-breeze (one side warm, the other cold: wind from the first moment on), or stable air (the same
-difference of temperature with more gravity: it stays at rest).
+With ``case`` the same box shows an inversion (the floor is colder than the ceiling: smoke from a chimney stays low), a
+sea breeze (one side is warm, the other cold: wind from the first moment on), or stable air (the same difference of
+temperature with more gravity: the air stays at rest).
 
 Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, one cell deep,
 that may rotate. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water, radiation, the
-rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km, because a box only about a
-hundred molecules high is so viscous that air under a real lapse rate would stay at rest in it.
+rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km. The box is only about a
+hundred molecules high; its air is so viscous that with a real lapse rate it would stay at rest.
 """
 
 import functools
@@ -121,7 +121,7 @@ not_measured = "where fewer molecules make another flow, not a less accurate one
 class Settings(SceneSettings):
     """What a user may set."""
 
-    case: str = setting("rolls", "", "which box: its other settings have their defaults from it", choices=tuple(CASES))
+    case: str = setting("rolls", "", "which box to run; it sets the other defaults", choices=tuple(CASES))
     molecules: int = setting(7300, "1", "number of molecules", low=50, high=1_000_000)
     floor_temperature: float = setting(
         270.0, "degC", "temperature of the floor, or of the warm side", low=-270.0, high=2000.0
@@ -149,7 +149,7 @@ class Settings(SceneSettings):
     tracers: str = setting(
         "floor",
         "",
-        "which molecules are followed from half of the run on: those near the floor, or above a chimney in its middle",
+        "which molecules are marked half-way through the run: those near the floor, or above a chimney in its middle",
         choices=("floor", "chimney"),
     )
     rotation: bool = setting(False, "", "whether spheres rotate, as molecules of air do; on the engine dsmc")
@@ -326,7 +326,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     steep = (settings.si.floor_temperature - settings.si.ceiling_temperature) / settings.height
     lapse = float(law.adiabatic_lapse_rate(box.gas, box.density, box.gravity)) * scale.temperature / scale.length
     fastest = float(np.max(box.growth((box.floor, box.ceiling), box.gravity)))
-    # the time in which a box of this height conducts a difference away
+    # the time in which conduction removes a difference of temperature in a box of this height
     spread = float(box.gas.conductivity(box.density, 1.0)) / (box.density * (0.5 * box.gas.freedom + 1.0))
     memory = box.height**2 / (math.pi**2 * spread)
     kind = "spheres of an ideal gas" if box.thin else f"discs {scale.length:.0f} m wide"
@@ -375,7 +375,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the air at rest, the adiabat through the middle of the height, and how rolls begin to grow."""
+    """Return the air at rest, the adiabat through the middle of the height, and the growth of weak rolls."""
     box = Box(settings, used(dataset))
     kT, pull = box.now(dataset)
     rest = box.rest(kT, pull)
@@ -384,7 +384,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     found = {"layer_temperature_conduction": np.interp(height, rest.height * metre, rest.temperature) * kelvin}
     if "layer_temperature" in dataset:
         density = dataset.number_density.values / box.scale.number_density
-        # the adiabat: by how much it falls from layer to layer, laid through the temperature measured half-way up
+        # the adiabat: its lapse rate, summed from layer to layer, through the temperature measured half-way up
         steps = np.array(law.adiabatic_lapse_rate(box.gas, density, pull)) * kelvin / metre
         fallen = np.concatenate([[0.0], np.cumsum(0.5 * (steps[1:] + steps[:-1]) * np.diff(height))])
         middle = 0.5 * settings.si.height
@@ -420,14 +420,14 @@ def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return lapse rate, wind, heat and weight of the air, what rose from the floor, and the growth of rolls."""
+    """Return weight, lapse rate, heat and wind of the air, the share of marked molecules aloft, and growth of rolls."""
     box = Box(settings, used(dataset))
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < LEAST:
         return ()
     kT, pull = box.now(dataset)
     rest = box.rest(kT, pull)
-    # where air is unstable and only too viscous to turn over, buoyancy makes the noise of rolls stronger
+    # in unstable air that is too viscous to turn over buoyancy amplifies the noise of rolls, so it has no theory here
     still = box.thin and not box.beside and law.rayleigh_number(rest) <= 0.0
     found = [_weight(late, dataset, box)]
     if box.beside:
@@ -471,7 +471,7 @@ def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
 def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> tuple[Headline, ...]:
     """Return the lapse rate of the core, and the Nusselt number, which is 1 in air at rest.
 
-    The lapse rate of air at rest has no theory good enough: below the cold ceiling mean free paths are so long that
+    No theory of the lapse rate of air at rest is good enough: below the cold ceiling mean free paths are so long that
     Fourier's law does not hold.
     """
     steep = overlapping_average(late.core_lapse_rate.values, BLOCKS)
@@ -527,10 +527,10 @@ def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecu
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the temperature (or the wind) against height, the rolls and what rose from the floor against time."""
+    """Return the panels of temperature (or wind) against height, and of the rolls against time."""
     if settings.sides == "warm-and-cold":
         profile = Panel(
-            "profile", "Below it blows to the warm side, above it back",
+            "profile", "Wind to the warm side below, back above",
             (Line("layer_wind", "height", "wind", error="layer_wind_se"),),
             x_label="wind away from the warm side", x_unit="m s-1", y_label="height", y_unit="km",
             headlines=("onshore_wind", "return_wind"),

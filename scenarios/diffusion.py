@@ -1,19 +1,18 @@
 """Two gases mix, because their molecules move at random.
 
-One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall
-between them is taken away. Every molecule flies on as it did; it is the collisions that turn its path into a random
-walk. Differences disappear, small-scale ones first: the last is half a wave between the
-end walls, which decays as exp(-D (pi/L)^2 t). Nothing is lost and no heat flows, but the two gases do not
-separate again: the entropy of mixing grows to k ln 2 for each molecule.
+One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall between
+them is taken away. Every molecule flies on as before; collisions turn its path into a random walk. Differences
+disappear, small-scale ones first. The last is half a wave between the end walls, which decays as exp(-D (pi/L)^2 t).
+Nothing is lost, but the two gases do not separate again: the entropy of mixing grows to k ln 2 for each molecule.
 
 By default the two gases differ by a label alone, as if half of the air were painted: this is self-diffusion. With
-mass_ratio the molecules on the right are so many times as heavy, as argon is to helium with 10.
+mass_ratio the molecules on the right are heavier; 10 is the ratio of argon to helium.
 
-Modelled: hard spheres of one size between smooth end walls; the other sides are periodic: what leaves on one comes
-in on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that
-the box is many mean free paths long with some thousand of them. The coefficient D is that of Chapman and Enskog for
-a thin gas over Enskog's contact value, plus 2 % because the collisions of a denser gas are correlated. Gases of unlike
-masses also conduct heat as they mix, and the light one moves first: the decay is that of the Boltzmann equation.
+Modelled: hard spheres of one size between smooth end walls; the other sides are periodic: what leaves on one comes in
+on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that some
+thousand of them make the box many mean free paths long. In theory D is that of Chapman and Enskog for a thin gas,
+divided by Enskog's contact value, plus 2 % because collisions in a denser gas are correlated. Gases of unlike masses
+also conduct heat as they mix, and the light one moves first; theory then is the Boltzmann equation.
 """
 
 import math

@@ -1,9 +1,8 @@
-"""Discs of unlike mass collide in a plane, and share their energy.
+"""Discs of different mass collide in a plane and share their energy.
 
-Sixty pucks on a frictionless table, light and heavy, start at the same speed: the heavy ones carry most of the
-energy. Every collision conserves momentum and energy to the last digits of a computer. Collisions alone
-bring light and heavy discs to the same mean energy, so the light ones are fast in the end. This
-is why hydrogen flies faster than oxygen in the same air.
+Sixty pucks on a frictionless table, light and heavy, start at the same speed: the heavy ones carry most of the energy.
+Every collision conserves momentum and energy except for rounding. Collisions alone bring light and heavy discs to the
+same mean energy, so the light ones are fast in the end. This is why hydrogen flies faster than oxygen in the same air.
 
 Modelled: smooth elastic discs in one plane, exact collisions, smooth walls. Left out: friction, spin,
 gravity. A disc's area grows with its mass. The scale is that of a table, and nothing is exaggerated.

@@ -1,14 +1,14 @@
 """Evaporation cools the water that remains.
 
-Dry air over a pool of water, at the pressure of the air outside and without heat from outside. Of the molecules
-of the pool only those leave that happen to have far more energy than the mean, and the rest grows colder: first
-the pool, then the air above it. The more vapour there is, the more of it returns to the pool; when as many molecules
-come back as leave, the air is saturated.
+Dry air lies over a pool of water, at constant pressure and without heat from outside. Only molecules that happen to
+have far more energy than the mean leave the pool, and the rest becomes colder: first the pool, then the air above it.
+The more vapour there is, the more of it returns to the pool; when as many molecules come back as leave, the air is
+saturated.
 
-Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and that the
-air has no influence on it. That in the end as many molecules come back as leave follows from their conservation. The
-run tests the vapour pressure and the temperature at which this happens, and the energy of the molecules that leave. It
-also shows that the pool cools first and the air follows, and how much so few molecules scatter.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities. The air has
+no influence on it. In the end as many molecules come back as leave, because no molecule is lost. The run tests the
+vapour pressure and the temperature at which this happens, and the energy of the molecules that leave. It also shows
+that the pool cools first and the air follows, and how much the numbers of so few molecules fluctuate.
 
 Modelled: molecules of air and water of real size and density under a piston that keeps the pressure; a pool on the
 floor. Up to 5,000 molecules are hard spheres; with more, chance decides which of them collide. Every molecule of vapour
@@ -182,7 +182,7 @@ def _wet_bulb(settings: Settings) -> str:
     si = settings.si
     dewpoint = float(law.dewpoint(si.humidity * law.saturation_vapor_pressure(si.temperature)))
     bulb = float(law.wet_bulb_temperature(si.pressure, si.temperature, min(dewpoint, si.temperature)))
-    return f"{bulb - 273.15:.2f} degC, of air over water that is as cold from the start"
+    return f"{bulb - 273.15:.2f} degC, of air over water with this temperature from the start"
 
 
 def _settled(start: AirOverPool, settings: Settings) -> int:

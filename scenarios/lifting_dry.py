@@ -1,16 +1,16 @@
 """A parcel of dry air rises and cools.
 
-Some thousand molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure
-in the box follows that of the environment, as the parcel rises. Nothing cools the molecules but this:
-those that hit the receding ceiling come back more slowly. Prescribed are the pressure at each moment and the two
-rotational degrees of freedom of a molecule; the dry adiabat, T ~ p^(2/7), emerges.
+Some thousand molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure in the box
+follows that of the environment of a rising parcel. Only one thing cools the molecules: those that hit the receding
+ceiling come back more slowly. Prescribed are the pressure at each moment and the two rotational degrees of freedom of a
+molecule; the dry adiabat, T ~ p^(2/7), emerges.
 
-Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact;
-smooth walls; a hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it
-would change its temperature by less than a billionth), water, mixing with the environment, heat from it.
-Exaggerated: the molecules are larger than those of air, so that they meet often, and the parcel rises nine
-kilometres within nanoseconds. Because the ascent is not infinitely slow, the parcel is too warm at 300 hPa: by about
-155 K divided by the duration of the ascent in mean free times, which is 0.1 K in the default run.
+Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact; smooth walls; a
+hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it would change its temperature by
+less than a billionth), water, mixing and exchange of heat with the environment. Exaggerated: the molecules are larger
+than those of air, so that they meet often, and the parcel rises nine kilometres within nanoseconds. Because the ascent
+is not infinitely slow, the parcel is too warm at 300 hPa: by about 155 K divided by the duration of the ascent in mean
+free times, which is 0.1 K in the default run.
 """
 
 import math
@@ -82,7 +82,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
-    """Return the scale, and density, sides within reach of the centres, and (Z - 1) / n at the start, in diameters."""
+    """Return the scale; and at the start, in diameters, density, sides that centres can reach, and (Z - 1) / n."""
     si = settings.si
     scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
     return scale, *size_of_parcel(scale, settings.molecules, si.pressure, ideal=ideal)
@@ -191,7 +191,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     ascent, spheres = _ascent(settings), 0.0 if used(dataset).ideal else 1.0
 
     def at(level: float) -> tuple[float, float, float]:
-        """Return the temperature measured where the parcel has a pressure [Pa], its error, and that of theory [K]."""
+        """Return the temperature measured at a pressure of the parcel [Pa], its error, and that of theory [K]."""
         adiabat = float(law.dry_adiabat_temperature(level, si.temperature, si.pressure, freedom))
         known = adiabat * (ascent.finite_speed(level) - spheres * ascent.room(level, density))
         found, chance = (float(np.interp(level, pressure[order], each)) for each in (warmer, error))

@@ -5,18 +5,18 @@ level more molecules begin to condense than evaporate, and each that condenses r
 on the parcel cools along the moist adiabat, at first half as fast.
 
 Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and the
-pressure at each moment. What emerges is the level of the cloud base, where the parcel, cooled by the receding piston,
-becomes saturated, and both lapse rates.
+pressure at each moment. What emerges is the cloud base, where the parcel becomes saturated as the receding piston cools
+it, and both lapse rates.
 
 Modelled: molecules of air and water that rotate (up to 5,000 are hard spheres; with more, chance decides which of them
 collide); droplets too fine to draw, of one temperature, carried along by the air; the latent heat, which follows from
-the binding energy and the heat capacities; a hydrostatic environment of constant lapse rate. Reversible: the droplets
-stay in the parcel; with rain=on the cloud holds a gram per kilogram, and any more falls out, which is nearly
-pseudo-adiabatic. Left out: ice, the curvature of droplets and what is dissolved in them; gravity inside the parcel;
-mixing with the environment. Exaggerated: some kilometres are climbed within nanoseconds, in a few hundred collisions of
-each molecule; the molecules are larger than those of air; the droplets have far more area than so little water could
-have. Few molecules are vapour, one in fifty, and already below the cloud base some of them are clustered, RH / (1 - RH)
-on average.
+the binding energy and the heat capacities; a hydrostatic environment of constant lapse rate. The ascent is reversible:
+the droplets stay in the parcel. With rain=on the cloud keeps a gram per kilogram, and the rest falls out: this is
+nearly pseudo-adiabatic. Left out: ice, the curvature of droplets and what is dissolved in them; gravity inside the
+parcel; mixing with the environment. Exaggerated: some kilometres are climbed within nanoseconds, in a few hundred
+collisions of each molecule; the molecules are larger than those of air; the droplets have far more area than so little
+water could have. Only one molecule in fifty is water, and even below the cloud base some of these are clustered, RH /
+(1 - RH) on average.
 """
 
 import functools

@@ -1,11 +1,11 @@
 """Air that crosses mountains arrives warm and dry: the foehn.
 
-A parcel climbs a mountain of two kilometres, sinks into a valley at one, climbs a second of three and sinks to the
-plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down the rest of
-the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over more kilometres than it had cooled
-at that rate. Without rain it would arrive with the temperature at which it started.
+A parcel crosses a mountain two kilometres high, a valley at one kilometre and a second mountain three kilometres high,
+and sinks to the plain. On the way up its vapour condenses and releases heat; part of the water rains out. On the way
+down the rest of the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over more kilometres
+than it had cooled at that rate. Without rain it would arrive as warm as it left.
 
-Prescribed: the curve e_s(T), the path, and how much cloud rains out, and how fast. What emerges is where clouds begin
+Prescribed: the curve e_s(T), the path, and how much cloud rains out and how fast. What emerges is where clouds begin
 and end, how much rain falls, and how warm the parcel arrives.
 
 Modelled: molecules of air and water (up to 5,000 are hard spheres; with more, chance decides which of them collide);

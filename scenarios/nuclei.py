@@ -1,21 +1,21 @@
-"""Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
+"""Why clouds need dust: small drops of pure water evaporate even in supersaturated air.
 
-A molecule leaves a small drop more easily than a flat surface: the drop's surface shrinks, and releases surface energy.
-A small drop evaporates unless the air is strongly supersaturated; the smaller the drop, the more. And every drop begins
-small. Salt helps: where part of the molecules are salt, fewer are water, and fewer leave. In one box of supersaturated
-air there are drops with a grain of salt in them and drops of pure water, of the same number of molecules. Those with
-salt grow. The others vanish, though the humidity is the same for all.
+A molecule leaves a small drop more easily than a flat surface: the drop's surface shrinks and releases surface energy.
+So the smaller a drop is, the more supersaturated the air must be, or the drop evaporates. And every drop begins small.
+Salt helps: it replaces some of the molecules of water, so fewer leave. In one box of supersaturated air there are drops
+with a grain of salt and drops of pure water, with the same number of molecules of water. Those with salt grow. The
+others vanish, though the humidity is the same for all.
 
 Prescribed: the surface energy of a drop, from the measured tension of water and the volume of its molecules; the curve
 e_s(T) of a flat surface; and an ideal solution, in which all ways to arrange water and salt are equally likely. What
-emerges is the vapour pressure over each drop (the laws of Kelvin and of Koehler), and with it which drops grow.
+emerges is the vapour pressure over each drop (the laws of Kelvin and of Koehler), and therefore which drops grow.
 
-Modelled: hard molecules of air and water at real density, drops that molecules hit and leave one by one. Left out:
-salt that does not dissolve at once, and attraction of its ions for water beyond the ideal; a tension that changes with
-the radius, though a drop of sixty molecules has no sharp surface; gravity. Drops rest, and have the temperature of the
-walls: their nuclei take up the latent heat, which in real air slows their growth. Exaggerated: molecules hit drops as
-if these were drop_size times as wide, which changes how soon they grow, and not which of them do; the grains are far
-smaller than those in the atmosphere, and need far more vapour.
+Modelled: hard molecules of air and water at real density, drops that molecules hit and leave one by one. Left out: the
+time in which salt dissolves, and forces of its ions on water; the change of surface tension with the radius (a drop of
+sixty molecules has no sharp surface); gravity. Drops are at rest and have the temperature of the walls: their nuclei
+take up the latent heat, which slows the growth of real drops. Exaggerated: molecules hit drops as if these were
+drop_size times as wide, which changes how soon drops grow, but not which of them do. The grains are far smaller than
+those in the atmosphere, and need far more vapour.
 """
 
 import math

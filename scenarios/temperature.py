@@ -7,8 +7,8 @@ the walls add up to the pressure n k T Z, where Z is a little more than 1 becaus
 
 Modelled: hard spheres of the mass and the diameter of air, which leave the walls with random velocities. Left out:
 gravity (over twenty nanometres its effect is too small to be seen), rotation (it does not change how fast molecules
-fly), and that air is a mixture. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K
-for two hundred.
+fly), and the different molecules of air. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the
+temperature, 17 K for two hundred.
 """
 
 import math
@@ -65,13 +65,13 @@ class Settings(SceneSettings):
 
 
 def _gas(settings: Settings, *, ideal: bool) -> tuple[Scale, law.WalledGas]:
-    """Return the units of the engine in SI, and theory's gas, as warm as the walls; it is ideal on `dsmc`."""
+    """Return the units of the engine in SI, and the gas of theory as warm as the walls; on `dsmc` it is ideal."""
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * settings.si.temperature)
     return scale, law.walled_gas(settings.si.pressure / scale.pressure, settings.molecules, ideal=ideal)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
-    """Return the box: cold molecules at random places between warm walls, and what is measured of them."""
+    """Return the box: cold molecules at random places between warm walls, and the instruments."""
     si, n = settings.si, settings.molecules
     scale, gas = _gas(settings, ideal=engine.ideal)
     length = (rounded(gas.side) + 1.0,) * 3  # in diameters: no centre comes nearer to a wall than a radius

@@ -5,7 +5,7 @@ the walls. The thermometer scatters half as much, by 9 K for eight hundred molec
 over the square root of their number.
 
 Modelled: hard spheres of the mass and the diameter of air, which leave the walls with random velocities. Left out:
-gravity, rotation, and that air is a mixture.
+gravity, rotation, and the different molecules of air.
 """
 
 title = "What is temperature? More molecules"

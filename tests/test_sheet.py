@@ -154,7 +154,7 @@ def test_the_latent_heat_in_the_answers_of_evaporation_is_that_of_theory(tempera
     latent = float(moist_adiabat.water_latent_heat_vaporization(temperature + 273.15)) / 1e6
     (told,) = re.findall(r"([\d.]+) MJ/kg", filled(last["answer"], run))
     assert float(told) == pytest.approx(latent, abs=0.001)
-    (carried,) = re.findall(r"along (\d+) zJ", filled(last["ask"], run))
+    (carried,) = re.findall(r"takes (\d+) zJ", filled(last["ask"], run))
     edges = np.linspace(90e-21, 250e-21, 2001)
     density = theory.leaving_energy_density(edges, temperature + 273.15)
     mean = float((density * np.diff(edges) * 0.5 * (edges[1:] + edges[:-1])).sum())

@@ -35,7 +35,7 @@ def animate(
             metavar="N", help="Frames per second.  [default: 10, or 20 where motion is smooth]", show_default=False
         ),
     ] = None,
-    graphs: Annotated[bool, typer.Option("--graphs", help="Film the graphs alone, without the molecules.")] = False,
+    graphs: Annotated[bool, typer.Option("--graphs", help="Film only the graphs, without the molecules.")] = False,
     theme: Theme = "notes",
     force: Force = False,
     quiet: Annotated[bool, quiet_option("Show no progress.")] = False,
@@ -43,7 +43,7 @@ def animate(
 ) -> None:
     """Film a run: the molecules in their box, and the graphs of the scene.
 
-    The molecules are in the file of a small run, and of any that was made with --save-molecules.
+    The molecules can be filmed if the run kept them: small runs do, others with --save-molecules.
     """
     from atmosbox.file.netcdf import read
 

@@ -37,10 +37,10 @@ def compare(
     theme: Theme = "notes",
     force: Force = False,
     as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
+    quiet: Annotated[bool, quiet_option("Print only the path of the figure.")] = False,
     verbose: Verbose = False,
 ) -> None:
-    """Compare runs: one figure, and by how much their numbers differ.
+    """Compare runs in one figure, and show by how much their numbers differ.
 
     Settings in which they differ are listed.
     """

@@ -27,13 +27,13 @@ def export(
         typer.Option(help="extxyz holds the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."),
     ] = None,
     force: Force = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
+    quiet: Annotated[bool, quiet_option("Print only the path of the file.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Write a run for OVITO, VMD or a spreadsheet.
 
-    Molecules are there if the run kept them, as small runs do, and others with --save-molecules. CSV is written as one
-    file for each dimension: NAME-elapsed_time.csv, NAME-height.csv, and NAME-headlines.csv.
+    Molecules can be exported if the run kept them: small runs do, others with --save-molecules. CSV is one file for
+    each dimension, such as NAME-elapsed_time.csv and NAME-height.csv, and NAME-headlines.csv.
     """
     from atmosbox.file.netcdf import read
     from atmosbox.file.output_path import check_writable, named, write_whole

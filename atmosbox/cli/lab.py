@@ -49,14 +49,14 @@ def lab(
     theme: option.PageTheme = "auto",
     language: option.Language = "auto",
     force: option.Force = False,
-    quiet: Annotated[bool, option.quiet_option("Print the path of the page, no more.")] = False,
+    quiet: Annotated[bool, option.quiet_option("Print only the path of the page.")] = False,
     verbose: option.Verbose = False,
 ) -> None:
     """Write a page in which a scene runs: the engine itself, in the browser.
 
-    The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed that
-    it was written with, and gives the same numbers as run. Its knobs act at once; of other settings it offers as many
-    values as fit into it. In the page that live opens, all settings can be changed.
+    The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed given
+    here, and gives the same numbers as run. Its knobs act at once; of other settings it offers as many values as fit
+    into the page. In the page that live opens, all settings can be changed.
     """
     if every:
         from atmosbox.cli.lab import save_all

@@ -14,7 +14,7 @@ from atmosbox.text.report import scene_lines
 
 @command("atmosbox list", "atmosbox list --names", "atmosbox list --json", name="list")
 def list_scenes(
-    names: Annotated[bool, typer.Option("--names", help="Print the names alone, one in a line.")] = False,
+    names: Annotated[bool, typer.Option("--names", help="Print only the names, one per line.")] = False,
     as_json: Json = False,
     verbose: Verbose = False,
 ) -> None:

@@ -38,17 +38,17 @@ def live(
     ] = None,
     no_token: Annotated[
         bool,
-        typer.Option("--no-token", help="Let in anybody on this computer, also without the token of the address."),
+        typer.Option("--no-token", help="Let anybody on this computer open the page, without the token."),
     ] = False,
     language: option.Language = "auto",
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
-    quiet: Annotated[bool, option.quiet_option("Print the address, no more.")] = False,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
+    quiet: Annotated[bool, option.quiet_option("Print only the address.")] = False,
     verbose: option.Verbose = False,
 ) -> None:
-    """Open a page in which a scene runs: change one thing at a time, and see what follows.
+    """Open a page in which a scene runs: change one thing at a time and see what happens.
 
     It is the page that lab writes, with all settings of the scene: for a changed setting, the page asks atmosbox for a
-    new start. Only this computer reaches it, and the address has a token that is new each time.
+    new start. Only this computer can open it, and the address has a token that is new each time.
     """
     if port is not None and not 1 <= port <= 65_535:
         raise SettingError("port", port, "is not a port from 1 to 65535", Option("port", 8642))

@@ -47,7 +47,7 @@ Values = Annotated[
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="A setting with its unit, as temperature=25degC; repeatable. --set may be left out.",
+        help="A setting with its unit, such as temperature=25degC; repeatable. --set may be left out.",
     ),
 ]
 ValuesOfAll = Annotated[
@@ -81,7 +81,7 @@ Accuracy = Annotated[
 ]
 Language = Annotated[
     Literal["auto", "en", "de", "es"],
-    typer.Option("--language", help="Words of the page; auto takes the reader's browser's language."),
+    typer.Option("--language", help="Language of the page; auto takes that of the reader's browser."),
 ]
 PageTheme = Annotated[
     Literal["auto", "light", "dark"], typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")

@@ -28,16 +28,16 @@ def plot(
         bool,
         typer.Option(
             "--with-box",
-            help="Draw the molecules in their box, at the start, half-way and at the end, over the graphs.",
+            help="Draw the molecules in their box, at the start, half-way and at the end, above the graphs.",
         ),
     ] = False,
     force: Force = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
+    quiet: Annotated[bool, quiet_option("Print only the path of the figure.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Draw the figure of a run.
 
-    Its box can be drawn if the run kept its molecules, as small runs do, and others with --save-molecules.
+    The box can be drawn if the run kept its molecules: small runs do, others with --save-molecules.
     """
     from atmosbox.file.netcdf import read
 

@@ -28,7 +28,7 @@ def prepare(
         bool, typer.Option("--all", help="Also for the engines stepped and dsmc, where a scene can use them.")
     ] = False,
     as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print the folder of the machine code, no more.")] = False,
+    quiet: Annotated[bool, quiet_option("Print only the folder of the machine code.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Compile the engine for all scenes, on all cores.

@@ -57,7 +57,7 @@ def run(
     replay: Annotated[
         str | None,
         typer.Option(
-            metavar="LINK", help="Run what the lab page ran, with every turn of its knobs: the link in quotes."
+            metavar="LINK", help="Repeat a run of the lab page, with every turn of its knobs: give its link in quotes."
         ),
     ] = None,
     resume: Annotated[
@@ -65,20 +65,20 @@ def run(
         typer.Option(metavar="FILE", help="Go on with a run that was stopped or killed, from its NAME.part.nc."),
     ] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Refuse a sounding that is doubtful, instead of a warning.")
+        bool, typer.Option("--strict", help="Refuse a doubtful sounding instead of giving a warning.")
     ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show what would run, compute nothing and write nothing.")
     ] = False,
     as_json: option.Json = False,
-    quiet: Annotated[bool, option.quiet_option("Print the path of the file, no more.")] = False,
+    quiet: Annotated[bool, option.quiet_option("Print only the path of the file.")] = False,
     verbose: option.Verbose = False,
 ) -> None:
-    """Run a scene, and compare what comes out with theory.
+    """Run a scene and compare the results with theory.
 
-    If a setting is given more than once, --seed counts before --set, --set before --config, and --config
-    before --from. Ctrl-C stops a run and keeps what is complete in NAME.part.nc, from which --resume goes on, bit for
-    bit as if the run had never been stopped; also after a crash.
+    If a setting is given more than once, --seed counts before --set, --set before --config, and --config before --from.
+    Ctrl-C stops a run and keeps the complete frames in NAME.part.nc. From there --resume goes on, bit for bit as if the
+    run had never been stopped; this works after a crash, too.
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.file.output_path import run_is_there, unused, whole_path

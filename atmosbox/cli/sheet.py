@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 def sheet(
     scene: Annotated[str, SceneName],
     answers: Annotated[
-        bool, typer.Option("--answers", help="Make its runs, fill in the table and answer the questions.")
+        bool, typer.Option("--answers", help="Make the runs, fill in the table and answer the questions.")
     ] = False,
     lab: Annotated[
-        bool, typer.Option("--lab", help="Without commands: write a page for each run, and name its buttons.")
+        bool, typer.Option("--lab", help="Use pages instead of commands: write one for each run, and name its buttons.")
     ] = False,
     values: ValuesOfAll = None,
     seed: Seed = None,
@@ -62,8 +62,8 @@ def sheet(
 ) -> None:
     """Make a worksheet to hand out: predict, run, measure, ask why.
 
-    The words of a sheet stand beside its scene, in SCENE.sheet.toml; a scene of your own without such a file gets a
-    sheet from what a run of it reports.
+    The text of a sheet is in a file beside its scene, SCENE.sheet.toml. For a scene of your own without such a file,
+    the sheet is made from what a run reports.
     """
     from atmosbox import sheet as sheets
 

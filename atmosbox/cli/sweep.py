@@ -61,13 +61,13 @@ def sweep(
         bool, typer.Option("--dry-run", help="Show the points, compute nothing and write nothing.")
     ] = False,
     as_json: option.Json = False,
-    quiet: Annotated[bool, option.quiet_option("Print the path of the file, no more.")] = False,
+    quiet: Annotated[bool, option.quiet_option("Print only the path of the file.")] = False,
     verbose: option.Verbose = False,
 ) -> None:
-    """Run a scene with many settings: how its numbers depend on them.
+    """Run a scene with many settings, to see how its results depend on them.
 
-    Every run is a file in a folder beside the one that joins them. A stopped sweep goes on where it was when the same
-    command is typed again, and runs that are there are not repeated. `atmosbox plot` draws the joined file.
+    Every run is a file in a folder, beside the file that joins them. To go on with a stopped sweep type the same
+    command again: finished runs are not repeated. `atmosbox plot` draws the joined file.
     """
     from atmosbox.file.output_path import unused
     from atmosbox.scene.spelling import assignments

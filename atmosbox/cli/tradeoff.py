@@ -40,20 +40,21 @@ def tradeoff(
     ctx: typer.Context,
     scene: Annotated[str, SceneName],
     values: ValuesOfAll = None,
-    budget: Annotated[str, typer.Option(metavar="TIME", help="For how long to measure.")] = "40s",
+    budget: Annotated[str, typer.Option(metavar="TIME", help="How long to measure.")] = "40s",
     seed: Annotated[str | None, typer.Option(metavar="N", help="The first seed.  [default: 1]")] = None,
     out: Annotated[
         str | None, out_option("The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]")
     ] = None,
     force: Force = False,
     as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
+    quiet: Annotated[bool, quiet_option("Print only the path of the file.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Measure speed against accuracy: errors and seconds of a scene on several engines and settings.
 
-    Each engine and setting runs many times, with other seeds, while the budget lasts; the engines are compiled before.
-    Ctrl-C ends it early and keeps what was measured. After a kill type the same command again: it goes on where it was.
+    Each engine and setting runs many times, with different seeds, until the budget is used up; the engines are compiled
+    first. Ctrl-C ends it early and keeps what was measured. After a kill type the same command again: it goes on where
+    it was.
     """
     from atmosbox.file.export import as_csv
     from atmosbox.file.output_path import check_writable, write_whole

@@ -28,13 +28,13 @@ def view(
     theme: PageTheme = "auto",
     language: Language = "auto",
     force: Force = False,
-    quiet: Annotated[bool, quiet_option("Print the path of the page, no more.")] = False,
+    quiet: Annotated[bool, quiet_option("Print only the path of the page.")] = False,
     verbose: Verbose = False,
 ) -> None:
-    """Show the molecules of a run in three dimensions, with its graphs on the same clock.
+    """Show the molecules of a run in three dimensions, and its graphs at the same time of the run.
 
-    The page is one HTML file, which opens in a browser without a network. Two runs stand side by side and share
-    the clock.
+    The page is one HTML file, which opens in a browser without a network. Two runs are side by side and show the same
+    time.
     """
     if len(files) > MOST:
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")

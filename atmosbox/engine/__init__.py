@@ -1,4 +1,4 @@
-"""The engine: colliding molecules, and nothing of meteorology.
+"""The engine: colliding molecules, without any meteorology.
 
 Read `core` first, then `exact`; the other folders when you need them. Each lists its files in the order in which to
 read them; docs/engine.md leads through them in an afternoon.

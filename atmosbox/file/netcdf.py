@@ -1,4 +1,4 @@
-"""Write datasets to netCDF files, whole or not at all, and read them."""
+"""Write datasets to netCDF files, completely or not at all, and read them."""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str
         if wider:
             found.append(f"The drops are {wider} times as wide as real ones of so many molecules.")
     elif seen.liquid is not None and np.any(seen.liquid):
-        found.append("The liquid is a mist without places: it is drawn as clumps, whose places the page chose.")
+        found.append("In the model the mist has no position: it is drawn as clumps at arbitrary places.")
     if seen.rained is not None and np.any(seen.rained):
         found.append("Rain has left the box: it is drawn as a layer on the floor.")
     return found

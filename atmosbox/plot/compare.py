@@ -1,4 +1,4 @@
-"""Comparison of runs: which of their settings differ, how far their headline numbers differ, and one figure of all."""
+"""Comparison of runs: the settings that differ, the differences of their headline numbers, and one figure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The measurement of a trade: all ways of running a scene, each as often as a budget of time allows."""
+"""Speed against accuracy: a scene on all engines and settings, each as often as a budget of time allows."""
 
 from __future__ import annotations
 

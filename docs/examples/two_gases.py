@@ -1,7 +1,7 @@
 """Two gases in gravity: each has its own height, as if the other were not there.
 
-Helium and argon stand in one box, on a warm floor. Their molecules collide with each other, and so are equally warm;
-but a light molecule flies higher with the same energy. Each gas thins with height by its own scale height, kT / mg.
+Helium and argon are in one box, on a warm floor. Their molecules collide with each other, and so are equally warm. But
+with the same energy a light molecule flies higher. Each gas thins with height by its own scale height, kT / mg.
 """
 
 import numpy as np

@@ -104,8 +104,8 @@ def atmosphere() -> list[list[str]]:
     return [
         ["sunshine, radiation, wind", f"{isothermal / 100.0:.0f} hPa at 10 km, in the standard atmosphere "
          f"{standard / 100.0:.0f} hPa: {rounded(100.0 * (isothermal / standard - 1.0))} %"],
-        ["air above the ceiling", f"the ceiling replaces it: it pushes back with the "
-         f"{rounded(si.surface_pressure * math.exp(-air.height) / 100.0)} hPa that it would weigh"],
+        ["air above the ceiling", f"the ceiling replaces it: it pushes back with "
+         f"{rounded(si.surface_pressure * math.exp(-air.height) / 100.0)} hPa, the weight of this air"],
         ["gravity falls with height", f"the air weighs {rounded(200.0 * held / EARTH)} % too much"],
         ["air is a mixture", f"at rest N₂ would have a scale height of {own['N2']:.2f} km and O₂ of {own['O2']:.2f} "
          "km; wind mixes the real atmosphere up to about 100 km"],
@@ -161,15 +161,15 @@ def lifting() -> list[list[str]]:
     slow = sum(SHARES[name][0] * each for name, each in RELAXATION.items()) / sum(SHARES[n][0] for n in RELAXATION)
     delayed = hurry * (1.0 - 5.0 / 3.0 / theory.DISSIPATION) * (slow - 1.0)
     return [
-        ["an hour for the ascent", f"in {rounded(setup.duration * setup.scale.time * 1e9)} ns the parcel arrives "
-         f"{rounded(hurry)} K too warm, in an hour {rounded(hour)} K"],
+        ["an hour for the ascent", f"after {rounded(setup.duration * setup.scale.time * 1e9)} ns the parcel is "
+         f"{rounded(hurry)} K too warm, after an hour {rounded(hour)} K"],
         ["vibration", f"it would make air {rounded(vibrating)} K warmer at {top / 100.0:.0f} hPa"],
         ["attraction", f"it moves the adiabat of air by {rounded(attracted)} K"],
         ["the true size of molecules", f"their excluded volume moves the adiabat by "
          f"{rounded(spheres_arrive(si.diameter, start, bottom, top, 5))} K, with the true size by "
          f"{rounded(spheres_arrive(DRY_AIR.diameter, start, bottom, top, 5))} K"],
-        ["rotation exchanges energy slowly", f"after {rounded(slow)} collisions in air, at each here; in so fast an "
-         f"ascent that would add {rounded(delayed)} K, in an hour nothing"],
+        ["rotation exchanges energy slowly", f"in air after {rounded(slow)} collisions, here at each; in so fast an "
+         f"ascent this would add {rounded(delayed)} K, in an hour nothing"],
     ]  # fmt: skip
 
 
@@ -199,21 +199,21 @@ def moist() -> list[list[str]]:
     known = finite_size.drift(ascent, ideal=False)
     clusters = float(known.clusters[np.argmin(np.abs(known.pressure - base))])
     return [
-        ["mixing with the environment", "the largest difference between a parcel and a cloud: in a simulated cumulus "
-         "the air above 2 km comes on average from well above the cloud base (Yeo and Romps 2013, "
+        ["mixing with the environment", "the largest difference between this parcel and a cloud: in a simulated "
+         "cumulus the air above 2 km comes on average from well above the cloud base (Yeo and Romps 2013, "
          "[doi:10.1175/JAS-D-12-0144.1](https://doi.org/10.1175/JAS-D-12-0144.1))"],
         ["ice", f"if all {rounded(1000.0 * liquid)} g/kg of liquid froze at {top / 100.0:.0f} hPa and "
-         f"{end - 273.15:.0f} °C, with {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
+         f"{end - 273.15:.0f} °C, at {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
          f"{rounded(frozen)} K warmer"],
-        ["rain (at the default)", f"the pseudo-adiabat ends {rounded(float(pseudo.temperature[0]) - end)} K from the "
-         "reversible one; `rain=on` shows it"],
-        ["the weight of the droplets", f"counts in the buoyancy as {rounded(end * liquid)} K, and not in the "
-         "temperature"],
+        ["rain (at the default)", f"the pseudo-adiabat ends {rounded(end - float(pseudo.temperature[0]))} K colder "
+         "than the reversible one; a run with `rain=on` ends nearly as cold"],
+        ["the weight of the droplets", f"lowers the buoyancy as if the parcel were {rounded(end * liquid)} K "
+         "colder; the temperature stays the same"],
         ["supersaturation in an updraft", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
          f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm in a cubic centimetre; here the delay of the "
          f"vapour makes the parcel up to {rounded(float(known.lag.max()))} K too cold"],
         ["an hour for the ascent", f"the parcel is up to {rounded(float(known.rate.max()))} K too warm"],
-        ["more molecules", f"of so few molecules some cluster too early: at the cloud base the parcel is "
+        ["clusters of few molecules", f"some molecules condense too early: at the cloud base the parcel is "
          f"{rounded(clusters)} K too warm"],
     ]  # fmt: skip
 

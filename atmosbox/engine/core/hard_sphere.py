@@ -13,10 +13,10 @@ from atmosbox.engine.core.random import gamma
 def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
     r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
-    They touch when :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, below zero while they approach, and
-    :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) in place of b: then that of a
-    pair that moves apart is not above zero either, unless it overlaps, and one test rejects nearly all pairs that do
-    not meet.
+    They touch when :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, which is below zero while they approach,
+    and :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) instead of b. For a pair that moves
+    apart it is then not above zero either, unless the two overlap. So one test rejects nearly all pairs that do not
+    meet.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def earlier_root(discriminant, b, c):
 
     Examples
     --------
-    Three diameters apart at a closing speed of one, they fly the gap of two in a time of two:
+    They are three diameters apart and approach at a speed of one, so they fly the gap of two in a time of two:
 
     >>> earlier_root(*quadratic(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0))
     2.0
@@ -81,7 +81,7 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 
     Notes
     -----
-    The distance at contact equals sigma only up to rounding. Dividing by the actual \|r\|^2, and not by sigma^2,
+    The distance at contact equals sigma only up to rounding. Dividing by the actual \|r\|^2 instead of sigma^2
     conserves the energy to the last digits nevertheless.
 
     Examples

@@ -1,10 +1,11 @@
 r"""The laws of the walls: specular, periodic, heat bath and piston.
 
-A **specular** wall reverses the normal velocity. A **periodic** pair of walls is no wall: a molecule that leaves on
-one side enters on the other. A **heat bath** gives the molecule a new velocity, drawn at random at the temperature of
-the wall. Its normal velocity follows Rayleigh's law, :math:`p(v) \propto v \exp(-m v^2 / 2 k T)`: the factor v is there
-because fast molecules hit a wall more often, and must leave it as often. The two tangential velocities are Gaussian. A
-**piston** is a specular wall that moves at velocity u: :math:`v' = -v + 2 u`. It does work on the molecules.
+A **specular** wall reverses the normal velocity. A **periodic** pair of walls is no wall: a molecule that leaves on one
+side enters on the other. A **heat bath** gives the molecule a new velocity, drawn at random at the temperature of the
+wall. Its normal velocity follows Rayleigh's law, :math:`p(v) \propto v \exp(-m v^2 / 2 k T)`: the factor v is there
+because fast molecules hit a wall more often, and so must leave it more often. The two tangential velocities are
+Gaussian. A **piston** is a specular wall that moves at velocity u: :math:`v' = -v + 2 u`. It does work on the
+molecules.
 """
 
 import math
@@ -139,8 +140,8 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
         if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
             low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
             raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
-    # the schedules of all walls stand in one array; `start` tells where that of each wall begins. Here the schedule of
-    # the floor has three corners, and that of each other wall has one:
+    # the schedules of all walls are in one array; `start` tells where that of each wall begins. Here the schedule of
+    # the floor has three corners, and those of the other walls have one each:
     #
     #   wall    x_low  x_high  y_low  y_high  z_low       z_high
     #   start     0      1       2      3       4           7     8
@@ -198,8 +199,8 @@ def resolve_wall_hit(wall, time, velocity, spin, kind, walls, planar, state):
     kind
         Mass [mass] and rotational degrees of freedom of the molecule, a tuple.
     walls, planar, state
-        The walls, whether the gas is plane so that the y velocity stays zero, and the state of the random numbers,
-        which is advanced.
+        The walls, whether the gas is in a plane, so that the y velocity stays zero, and the state of the random
+        numbers, which is advanced.
 
     Examples
     --------

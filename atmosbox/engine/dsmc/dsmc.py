@@ -1,10 +1,10 @@
 r"""Direct simulation Monte Carlo: molecules fly freely for a step, then collide with random partners nearby.
 
-In a dilute gas it matters only that molecules collide at the right rate, with partners from the same place. So this
-method does not compute which molecules hit each other. The box is divided into cells, smaller than a mean free path,
-with some ten molecules each. After every step of free flight, shorter than a mean free time, pairs are drawn at random
-within each cell [1]_. During a step one molecule of a pair with relative speed c sweeps the volume
-:math:`\pi\sigma^2 c\,\Delta t`, so the pair collides with the probability
+In a dilute gas it matters only that molecules collide at the right rate, with partners near them. So this method does
+not compute which molecules hit each other. The box is divided into cells, smaller than a mean free path, with some ten
+molecules each. After every step of free flight, shorter than a mean free time, pairs are drawn at random within each
+cell [1]_. During a step one molecule of a pair with relative speed c sweeps the volume :math:`\pi\sigma^2 c\,\Delta t`,
+so the pair collides with the probability
 
 .. math:: P = \frac{\pi \sigma^2 c\, \Delta t}{V_{cell}}.
 
@@ -13,10 +13,10 @@ Testing all pairs would cost the square of their number. Bird's *no time counter
 .. math:: \frac{n (n - 1)}{2} \frac{\pi \sigma^2 c_{max}\, \Delta t}{V_{cell}}
 
 of them, with a speed :math:`c_{max}` that no pair exceeds, and accepts each with probability :math:`c / c_{max}`, which
-gives the same rates. A collision conserves the momentum and energy of its pair, and turns the relative velocity to a
-random direction, as for spheres that meet off centre at random. Molecules have no excluded volume: the gas is ideal.
+gives the same rates. A collision conserves the momentum and energy of its pair and gives the relative velocity a random
+direction, as for spheres that meet off centre at random. Molecules have no excluded volume: the gas is ideal.
 
-The random numbers of a cell follow from seed, step and cell, and not from those of other cells: so a run is the same
+The random numbers of a cell follow only from seed, step and cell, not from those of other cells. So a run is the same
 for any number of threads.
 
 References
@@ -76,7 +76,7 @@ def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: st
     Raises
     ------
     RefusedError
-        If there are so few molecules that hardly any share a cell; the message says what was ``asked`` for.
+        If there are so few molecules that hardly any share a cell; the message repeats what was ``asked`` for.
 
     Examples
     --------
@@ -204,8 +204,8 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
     rotates, parallel
         Whether molecules rotate, and whether several threads share the work.
     wet, pool
-        Whether there is liquid, so that there are several kinds of molecules that enter and leave the gas; and whether
-        the floor is its surface.
+        Whether there is liquid, so that there are several kinds of molecules, which enter and leave the gas; and
+        whether the floor is the surface of the liquid.
     """
     features = Features(rotates, wet, pool)
 
@@ -261,7 +261,7 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 index_by_cell(columns.cell, columns.order, grid.place[t], first, last)
             # collide: the volume of a cell is the part that centres can reach
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
-            # times n (n - 1) and the largest relative speed, `sweep` is the number of pairs to draw in a cell
+            # `sweep` times n (n - 1) and the largest relative speed is the number of pairs to draw in a cell
             sweep = 0.5 * run.cross_section * dt / volume
             for t in prange(threads):
                 here = Air(columns, grid, gas, box, walls, workspace, tries, None)

@@ -1,4 +1,4 @@
-"""The exact engine: time jumps from one event to the next, and nothing is approximated in between.
+"""The exact engine: time jumps from one event to the next, and nothing in between is approximated.
 
 Every molecule has one event, the first of three: its next contact, the next boundary of a cell that it reaches, its
 next hit on a wall. The calendar tells which event of all molecules is the next. It is resolved, and the events of the
@@ -120,7 +120,7 @@ def proceed(gas, until, most, modes):
         other = at
         boundary = CONTACT
         if what < CONTACT and not is_wall(i, what, gas, modes):
-            # a boundary between cells: the molecule's motion stays, only its cells and its event change
+            # a boundary between cells: the molecule's motion does not change, only its cells and its event do
             if modes.rows:
                 boundary = what
                 entered += 1
@@ -276,8 +276,9 @@ def _checking(modes: Modes) -> Any:
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
 
-    The flags are constants in them, so that numba leaves out what is switched off. They are compiled once for each set,
-    and kept on disk. Kernels that read few of the flags are shared by all sets that differ in the others.
+    The flags are constants in the kernels, so that numba leaves out what is switched off. The kernels are compiled once
+    for each set of flags, and kept on disk. Kernels that use only few flags are shared by all sets that differ in the
+    other flags.
     """
     of_events = ("rotation", "pool", "drops", "images", "ascends")
     place, refill = _laying_out(modes.without("piston", *of_events))

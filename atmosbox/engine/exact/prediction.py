@@ -1,8 +1,8 @@
-"""The next events of a molecule: its next contact, its next cell boundary, its next wall.
+"""The next events of a molecule: its next contact, its next boundary of a cell, its next hit on a wall.
 
-All three are predicted when the molecule has had an encounter, and the soonest becomes its event in the calendar
-(`plan`). Only the members of its own cells are searched for a contact: by `search` where rows hold copies of
-trajectories, by `soonest_in_cell` where they are lists of molecules.
+All three are predicted after each encounter of the molecule, and the soonest becomes its event in the calendar
+(`plan`). Partners for a contact are searched only in its own cells: by `search` where rows hold copies of trajectories,
+by `soonest_in_cell` where they are lists of molecules.
 """
 
 import math
@@ -57,7 +57,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
     partner = known.partner
     for q in range(np.int64(row[start])):
         j = np.int64(row[start + 1 + q])
-        # where the other one is at time t, from its own clock on
+        # where the other molecule is at time t: it has flown freely since its own clock
         other = gas.molecules[j]
         dt = t - other.clock
         wx = other.vx
@@ -179,7 +179,7 @@ def plan(i, t, at, boundary, gas, modes):
 
 @kernel
 def call(i, t, gas):
-    """Request that the events of molecule i are predicted at time t, before anything else happens.
+    """Request that the events of molecule i be predicted at time t, before anything else happens.
 
     The request is a contact of the molecule with itself. So only the loop over events contains the search for contacts,
     which takes long to compile.

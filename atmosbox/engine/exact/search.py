@@ -1,8 +1,8 @@
 """The search for a molecule's next contact, where the rows of cells hold copies of trajectories.
 
-When its velocity is new, a molecule searches the rows of all its cells. When it reaches the boundary of new cells, it
-searches the rows of these alone. Both are done by one function, so that the search is compiled once. It also takes the
-molecule out of the cells that it no longer overlaps, because leaving a cell is not an event.
+A molecule with a new velocity searches the rows of all its cells. A molecule that reaches the boundary of new cells
+searches only the rows of these. One function does both, so that the search is compiled once. It also takes the molecule
+out of the cells that it no longer overlaps, because leaving a cell is not an event.
 """
 
 from typing import Any, NamedTuple
@@ -119,7 +119,7 @@ def _brought_back(i, at, sx, sy, sz, gas):
 
 @kernel
 def _image_shift(q, length, inverse):
-    """Return by how much a coordinate relative to the centre of a cell must be shifted to become the nearest image."""
+    """Return the shift by which a coordinate relative to the centre of a cell becomes that of the nearest image."""
     return length * np.rint(q * inverse)
 
 
@@ -149,8 +149,8 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
     t, at, radius = seeker.t, seeker.at, seeker.radius
     x, y, z = at.x - centre[0], at.y - centre[1], at.z - centre[2]
     place = np.float32(x), np.float32(y), np.float32(z + seeker.fall)
-    # first the quick test of all blocks, eight members at once (separate from the exact test, this is faster). The bits
-    # of one number tell which places of the row are occupied, those of another which members may be hit:
+    # first the quick test of all blocks, eight members at once (it is faster if it is separate from the exact test).
+    # The bits of one number tell which places of the row are occupied, those of another which members may be hit:
     #
     #   bit    ...  15 14 13 12 11 10  9  8 |  7  6  5  4  3  2  1  0
     #   block                1              |           0
@@ -166,7 +166,7 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
         left = (left >> BATCH) & _OTHERS
         block += 1
     named &= occupied
-    # then the exact test of those that it names; the image of a member is the one nearest to the centre of the cell
+    # then the exact test of the members that it names, each at its image nearest to the centre of the cell
     while named != 0:
         j = name_at(start, lowest_bit(named), cells, modes)
         named &= named - 1
@@ -250,7 +250,7 @@ def search(i, t, at, boundary, gas, modes):
     since = t - copies.epoch[START]
     path = path_of(at, since, gas, modes)
     seeker = _seeker(t, at, radius, since, path, slots[2] >> 1, gas, modes)
-    # copies are written where it is in new cells, and in all its cells if its velocity is new: then its clock reads t
+    # copies are written into its new cells, and into all its cells if its velocity is new (its clock then reads t)
     moved = crossing or gas.molecules[i].clock == t
     left = new & entered
     while left != 0:
