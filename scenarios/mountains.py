@@ -25,13 +25,12 @@ from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene.ascent import (
     MoistAscent,
-    along_frames,
     atmosphere_panel,
-    finite_size,
+    comparable,
+    draw,
     lifted_theory,
     refuse_supersaturation,
     rise,
-    temperature_covariance,
 )
 from atmosbox.scene.ascent.display import THEORY
 from atmosbox.scene.engines import EXACT, suited, used
@@ -143,42 +142,20 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     pressure = dataset.parcel_pressure.values
     if len(pressure) < FRAMES:
         return ()
-    misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
-    path, ideal = ascent.planned[1], used(dataset).ideal
+    path, late = ascent.planned[1], slice(-BLOCK, None)
+    drawn = draw(ascent, dataset.environment_pressure.values, FRAMES, SAMPLES, ideal=used(dataset).ideal)
     arrival = float(path.temperature[-1])
-    late = slice(-BLOCK, None)
-    outside = dataset.environment_pressure.values
-    chance = temperature_covariance(along_frames(ascent, outside, FRAMES, SAMPLES, ideal=ideal), SAMPLES)[late, late]
-    rains = "rain_mixing_ratio" in dataset
-    more = finite_size.rained(ascent) if rains else path
-    known = float(more.temperature[-1]) - arrival + float(finite_size.drift(ascent, ideal=ideal).warmer[-1])
-    found = [
-        Headline(
-            "arrival_temperature",
-            arrival + float(misfit[late].mean()),
-            arrival * math.sqrt(chance.mean()),
-            arrival + known if finite_size.comparable(ascent) else None,
-            0.0,
-            THEORY,
-            "K",
-            "degC",
-            "temperature in the plain beyond",
-        )
-    ]
-    if rains:
-        found.append(
-            Headline(
-                "rain",
-                float(dataset.rain_mixing_ratio[-1]),
-                finite_size.rain_scatter(ascent),
-                float(more.rain[-1]) if finite_size.comparable(ascent) else None,
-                0.0,
-                "the liquid of so few molecules scatters, and what exceeds the limit rains out",
-                "kg kg-1",
-                "g kg-1",
-                "rain per dry air",
-            )
-        )
+    warmer = arrival * drawn.warmth[:, late].mean(axis=1)
+    value = arrival + float((dataset.parcel_temperature - dataset.adiabat_temperature).values[late].mean())
+    answer = arrival + float(warmer.mean()) if comparable(ascent) else None
+    label, error = "temperature in the plain beyond", float(warmer.std())
+    found = [Headline("arrival_temperature", value, error, answer, 0.0, THEORY, "K", "degC", label)]
+    if "rain_mixing_ratio" in dataset:
+        unit, lost = ascent.total_water / max(ascent.vapour, 1), drawn.rain[:, -1]
+        value, error = float(dataset.rain_mixing_ratio[-1]), unit * max(float(lost.std()), 1.0)
+        answer = float(path.rain[-1]) + unit * float(lost.mean()) if comparable(ascent) else None
+        reason = "the liquid of so few molecules scatters, and what exceeds the limit rains out"
+        found.append(Headline("rain", value, error, answer, 0.0, reason, "kg kg-1", "g kg-1", "rain per dry air"))
     return tuple(found)
 
 

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent import finite_size
-from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance, vapour_covariance
-from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
+from atmosbox.scene.ascent.drawn_parcels import Parcels, comparable, draw, planned_cloud
+from atmosbox.scene.ascent.near_equilibrium import cloud_along
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import Line, Panel
@@ -24,8 +23,6 @@ BLOCK = 7
 """Number of frames over which a temperature is averaged before it is compared with the adiabat."""
 LEAST, CLUSTERED = 0.1, 3.0
 """Least liquid that counts as a cloud: as a share of all water, and in standard deviations of the liquid."""
-_DRAWN = 1000
-_SEED = 21
 THEORY = "theory is the adiabat of a large parcel, with the known errors of so fast an ascent of so few molecules"
 
 
@@ -164,12 +161,9 @@ def lifted_headlines(
     pressure, outside = dataset.parcel_pressure.values, dataset.environment_pressure.values
     if len(pressure) < BLOCK:
         return ()
-    cloud = along_frames(ascent, outside, frames, samples, ideal=ideal)
+    drawn = draw(ascent, outside, frames, samples, ideal=ideal)
     misfit = (dataset.parcel_temperature - dataset.adiabat_temperature).values
-    temperature = dataset.adiabat_temperature.values
-    chance = temperature_covariance(cloud, samples) * np.outer(temperature, temperature)
-    known = finite_size.drift(ascent, ideal=ideal)
-    found = _cloud_base(dataset, ascent, cloud, samples, known)
+    found = _cloud_base(dataset, ascent, drawn)
     for level in ascent.levels:
         if outside.min() > 1.02 * level:  # the parcel's own pressure fluctuates
             continue
@@ -177,64 +171,38 @@ def lifted_headlines(
         first = min(max(first, 0), len(pressure) - BLOCK)
         near = slice(first, first + BLOCK)
         adiabat = float(ascent.planned_at(level).temperature[0])
-        found.append(
-            Headline(
-                f"temperature_at_{level / 100.0:.0f}_hpa",
-                adiabat + float(misfit[near].mean()),
-                float(np.sqrt(chance[near, near].mean())),
-                adiabat + float(known.at(outside[near]).mean()) if finite_size.comparable(ascent) else None,
-                0.0,
-                THEORY,
-                "K",
-                "degC",
-                f"temperature at {level / 100.0:.0f} hPa",
-            )
-        )
+        warmer = drawn.warmth[:, near].mean(axis=1) * adiabat
+        name, label = f"temperature_at_{level / 100.0:.0f}_hpa", f"temperature at {level / 100.0:.0f} hPa"
+        value, error = adiabat + float(misfit[near].mean()), float(warmer.std())
+        answer = adiabat + float(warmer.mean()) if comparable(ascent) else None
+        found.append(Headline(name, value, error, answer, 0.0, THEORY, "K", "degC", label))
     return tuple(found)
 
 
-def _cloud_base(
-    dataset: xr.Dataset, ascent: MoistAscent, cloud: Cloud, samples: int, known: finite_size.Drift
-) -> list[Headline]:
-    """Return the pressure at which the liquid of the parcel begins, and the known error of that level."""
-    vapour, liquid = (dataset[name].values for name in ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio"))
-    condensed = liquid + (dataset.rain_mixing_ratio.values if "rain_mixing_ratio" in dataset else 0.0)
+def _cloud_base(dataset: xr.Dataset, ascent: MoistAscent, drawn: Parcels) -> list[Headline]:
+    """Return the pressure at which the liquid of the parcel begins.
+
+    Noise shifts that level by an amount that depends on the slope of the curve, and the measured slope is noisy itself:
+    so error and theory are those of the drawn parcels, measured in the same way.
+    """
     if not ascent.base > ascent.top_pressure:
         return []
-    unit = law.WATER_MASS_RATIO / cloud.air
-    noise = vapour_covariance(cloud, samples) * unit**2
-    scatter = float(np.sqrt(np.linalg.inv(cloud.resists)[:, 0, 0].max())) * unit
-    least = max(LEAST, CLUSTERED * scatter / ascent.total_water)
+    vapour, liquid = (dataset[name].values for name in ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio"))
+    condensed = liquid + (dataset.rain_mixing_ratio.values if "rain_mixing_ratio" in dataset else 0.0)
+    water, unit = ascent.total_water, ascent.total_water / ascent.vapour
+    noise = np.cov(drawn.vapour.T) * unit**2
+    least = max(LEAST, CLUSTERED * float(planned_cloud(ascent).liquid_scatter.max()) / ascent.vapour)
     base = law.measured_cloud_base(dataset.parcel_pressure.values, vapour, condensed, noise, least)
     if base is None or base.pressure > ascent.pressure:  # noise can put it below the ground
         return []
-    # measure theory's parcel in the same way, with its known errors, in frames of the same width
-    path = ascent.planned[1]
-    warmer = known.rate / path.temperature
-    held = np.where(
-        path.liquid > 0.0, path.vapor * (1.0 + path.vapor / law.WATER_MASS_RATIO) * known.latent * warmer, 0.0
-    )
-    off = path.vapor + held + unit * (known.late - known.clustered)
     frames = dataset.environment_pressure.values
-    v = np.interp(np.log(frames[::-1]), np.log(np.array(ascent.route))[::-1], off[::-1])[::-1]
-    # noise shifts the level by an amount that depends on the slope of the curve, and the measured slope is noisy
-    # itself: where it happens to be flat the error would come out several times too large, and the level too low. So
-    # parcels are drawn at random about theory's parcel; their mean contains the known errors and the mean effect of the
-    # noise
-    root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
-    drawn = np.clip(
-        v + np.random.default_rng(_SEED).standard_normal((_DRAWN, len(v))) @ root.T, 0.0, ascent.total_water
-    )
-    seen = [law.measured_cloud_base(frames, each, ascent.total_water - each, noise, least) for each in drawn]
-    levels = [each.pressure for each in seen if each is not None]
-    if len(levels) > 0.5 * _DRAWN:
-        error, expected = float(np.std(levels, ddof=1)), float(np.mean(levels))
-    else:
-        quiet = law.measured_cloud_base(frames, v, ascent.total_water - v, noise, least)
-        error, expected = base.standard_error, quiet.pressure if quiet else ascent.base
+    seen = np.clip((drawn.theory + drawn.vapour) * unit, 0.0, water)
+    found = [law.measured_cloud_base(frames, each, water - each, noise, least) for each in seen]
+    levels = [each.pressure for each in found if each is not None]
+    if len(levels) <= 0.5 * len(seen):
+        return []
+    error, expected = float(np.std(levels, ddof=1)), float(np.mean(levels))
     aside = f"{(expected - ascent.base) / 100.0:+.1f} hPa"
     note = f"theory is {aside} from the condensation level: few molecules, noise, and vapour that condenses late"
-    low, high = ascent.top_pressure, ascent.pressure
-    return [
-        Headline("cloud_base", base.pressure, error, expected, 0.0, note, "Pa", "hPa", "cloud base", low=low, high=high)
-    ]
+    ends = {"low": ascent.top_pressure, "high": ascent.pressure}
+    return [Headline("cloud_base", base.pressure, error, expected, 0.0, note, "Pa", "hPa", "cloud base", **ends)]

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import FollowPressure, Mist
-from atmosbox.scene.ascent.finite_size import drift, least_cloud
-from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
+from atmosbox.scene.ascent.drawn_parcels import draw, drift, least_cloud, planned_cloud
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
 from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
@@ -81,10 +80,10 @@ def rise(
         return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * samples)).temperature
 
     def scatter(pressure: Array) -> Array:
-        cloud = along_frames(ascent, pressure, frames, samples, ideal=engine.ideal)
-        return np.sqrt(np.diag(temperature_covariance(cloud, samples)))
+        return draw(ascent, pressure, frames, samples, ideal=engine.ideal).warmth.std(axis=0)
 
-    known = drift(ascent, ideal=engine.ideal)
+    planned = planned_cloud(ascent, ideal=engine.ideal)
+    known = planned.temperature * drift(planned)
     base = ascent.base
     return Setup(
         parcel,
@@ -103,7 +102,7 @@ def rise(
                 if ascent.rains
                 else {}
             ),
-            "known errors": f"theory is {known.warmer.min():+.2g} to {known.warmer.max():+.2g} K from the adiabat",
+            "known errors": f"theory is {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
         },
         knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
         ends=True,

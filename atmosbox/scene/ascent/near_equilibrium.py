@@ -59,8 +59,6 @@ class Cloud(NamedTuple):
     resists: Array
     yields: Array
     warms: Array
-    air_heat: Array
-    """Heat capacity of the gas at constant volume, in k."""
     clear_heat: Array
     """Heat capacity of the whole parcel at constant pressure if no vapour condenses, in k."""
     slope: Array
@@ -80,12 +78,16 @@ class Cloud(NamedTuple):
     """Heat capacity of liquid and nuclei, in k."""
     air: float
     """Molecules of dry air."""
+    all_molecules: int
+    """Molecules of air and water at the start."""
     humidity: Array
     """Relative humidity, at most 1."""
     keeps: float
     """Molecules of liquid that the cloud holds before it rains; infinite if it does not rain."""
     rains: float
     """Rate at which each molecule in excess of ``keeps`` falls out."""
+    rained: Array
+    """Molecules that have rained according to theory."""
 
     @property
     def cloudy_heat(self) -> Array:
@@ -124,6 +126,22 @@ class Cloud(NamedTuple):
         gone = np.array([1.0, 0.0]) / self.gas[:, None]
         slope = (self.density_slope if density else self.slope)[:, None]
         return np.asarray(self.warms - density * gone - slope * (self.warms - gone))
+
+    @property
+    def behind(self) -> Array:
+        """Return how far x lags behind its equilibrium while the cloud grows, (moment, 2)."""
+        relaxes = np.einsum("tij,tjk->tik", self.yields, self.resists)
+        return np.asarray(np.linalg.solve(relaxes, self.change[:, :, None])[:, :, 0])
+
+    @property
+    def liquid_scatter(self) -> Array:
+        """Standard deviation of the number of liquid molecules, (moment,)."""
+        return np.sqrt(np.linalg.inv(self.resists)[:, 0, 0])
+
+    def clusters(self, *, density: bool = False) -> Array:
+        """Return by how much molecules in clusters warm the parcel, as a share of T or of the density temperature."""
+        latent = self.latent - (3.5 if density else 0.0)  # they are missing among the light molecules of the gas
+        return latent * self.clustered / (3.5 * self.all_molecules)
 
     @property
     def density_slope(self) -> Array:
@@ -286,7 +304,6 @@ def cloud_along(
         resists=resists,
         yields=yields,
         warms=warms,
-        air_heat=np.asarray(gas_heat),
         clear_heat=air * heat,
         slope=slope,
         expansion=np.gradient(np.log(t) - np.log(pressure), moment),
@@ -296,7 +313,9 @@ def cloud_along(
         hits=np.asarray(hits + condenses),
         liquid_heat=np.asarray(liquid_heat),
         air=air,
+        all_molecules=ascent.molecules,
         humidity=humidity,
         keeps=float(ascent.keeps) if ascent.rains else math.inf,
         rains=RAIN if ascent.rains else 0.0,
+        rained=path.rain / law.WATER_MASS_RATIO * air,
     )
