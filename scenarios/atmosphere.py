@@ -23,31 +23,21 @@ a slab one scale height thick stands for the third dimension.
 """
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import HeatBath, Maxwell, Periodic, Rotating, Scattered, Specular, Start
 from atmosbox.errors import Setting
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Layers,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Layers
 from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.panels import Line, Panel, over_height
 from atmosbox.scene.statistics import average_beside
-from atmosbox.scene.units import rounded
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -451,35 +441,21 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return pressure and temperature against height."""
 
-    def against_height(
-        title: str,
-        name: str,
-        theory: str,
-        others: tuple[Line, ...],
-        label: str,
-        unit: str,
-        headlines: tuple[str, ...],
-        **more: Any,
-    ) -> Panel:
-        measured = Line(name, "height", "molecules", error=f"{name}_se")
-        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), *others
-        return Panel(
-            "profile", title, lines, x_label=label, x_unit=unit, y_label="height", y_unit="km", headlines=headlines,
-            **more,
-        )  # fmt: skip
+    def measured(name: str, theory: str) -> tuple[Line, Line]:
+        molecules = Line(name, "height", "molecules", error=f"{name}_se")
+        return molecules, Line(f"{name}_theory", "height", theory, "theory")
 
     real = Line("layer_temperature_standard", "height", "standard atmosphere", "environment")
     scale = 1e-3 * BOLTZMANN * settings.si.temperature / (DRY_AIR.molecule_mass * settings.si.gravity)
     held = -math.expm1(-settings.height / scale)  # the share of an endless column that is below the ceiling
     below = ((share, -scale * math.log1p(-share * held)) for share in (0.5, 0.75, 0.9))
     guides = tuple(("y", height, f"{100.0 * share:.0f} % below {height:.1f} km") for share, height in below)
+    thins, warm = (
+        measured("layer_pressure", "barometric law, finite molecules"),
+        measured("layer_temperature", "isothermal"),
+    )
+    numbers, title = ("scale_height", "mean_surface_pressure"), "At rest it is as warm above as below"
     return (
-        against_height(
-            "The air thins with height", "layer_pressure", "barometric law, finite molecules", (),
-            "pressure", "hPa", ("scale_height", "mean_surface_pressure"), guides=guides,
-        ),
-        against_height(
-            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "K",
-            ("mean_temperature",),
-        ),
-    )  # fmt: skip
+        over_height("The air thins with height", thins, "pressure", "hPa", *numbers, guides=guides),
+        over_height(title, (*warm, real), "temperature", "K", "mean_temperature"),
+    )

@@ -45,26 +45,13 @@ from atmosbox.engine import (
     lattice_positions,
 )
 from atmosbox.errors import Setting, SettingError
-from atmosbox.scene import (
-    Air,
-    Clusters,
-    EngineChoice,
-    Headline,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    Slab,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT
+from atmosbox.scene.instruments import Air, Clusters, Slab
 from atmosbox.scene.knob import Knob
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.statistics import BlockAverage, overlapping_average
-from atmosbox.scene.units import rounded
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.statistics import BlockAverage, block_average, overlapping_average
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 if TYPE_CHECKING:

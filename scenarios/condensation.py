@@ -23,25 +23,14 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    DropSizes,
-    EngineChoice,
-    Headline,
-    Panel,
-    SceneSettings,
-    Series,
-    Setup,
-    Water,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import MoistBox
+from atmosbox.scene.instruments import Air, DropSizes, Water
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import WARM, moist_air, nuclei_heat_capacity, water
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.statistics import BlockAverage
+from atmosbox.scene.panels import Panel, over_time
+from atmosbox.scene.statistics import BlockAverage, block_average
 
 if TYPE_CHECKING:
     import xarray as xr

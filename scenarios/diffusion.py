@@ -23,24 +23,12 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Maxwell, Periodic, Scattered, Specular, Start
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Line,
-    Mixing,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE, CHANCE_LIMIT
-from atmosbox.scene.instruments import MOMENTS
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.units import rounded
+from atmosbox.scene.instruments import MOMENTS, Air, Mixing
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:

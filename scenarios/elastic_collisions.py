@@ -16,25 +16,13 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import EqualSpeeds, RandomNumbers, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    Discs,
-    EngineChoice,
-    Headline,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    Speeds,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import ROUNDING
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.units import rounded
+from atmosbox.scene.instruments import Air, Discs, Speeds
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.statistics import block_average
+from atmosbox.scene.units import Scale, rounded
 
 if TYPE_CHECKING:
     import xarray as xr

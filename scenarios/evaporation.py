@@ -25,27 +25,16 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Pool
 from atmosbox.errors import Setting
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Leaving,
-    Line,
-    Panel,
-    SceneSettings,
-    Series,
-    Setup,
-    Water,
-    block_average,
-    setting,
-)
-from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
+from atmosbox.scene.engines import EXACT, suited_engine, used
 from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Leaving, Water
 from atmosbox.scene.knob import open_pool, warmed_walls
 from atmosbox.scene.moisture import water
-from atmosbox.scene.panels import over_time
+from atmosbox.scene.panels import Line, Panel, over_time
 from atmosbox.scene.piston import moist_parcel, parcel_facts
+from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -116,9 +105,7 @@ def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
     )
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

@@ -20,7 +20,6 @@ on average.
 """
 
 import functools
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +35,7 @@ from atmosbox.scene.ascent import (
     refuse_supersaturation,
     rise,
 )
-from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene.engines import EXACT, suited_engine, used
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,24 +85,10 @@ def _top(settings: Settings) -> float:
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the ascent according to theory."""
-    si = settings.si
-    heights = np.linspace(0.0, _top(settings), 400)
-    return MoistAscent(
-        molecules=settings.molecules,
-        diameter=si.diameter,
-        temperature=si.temperature,
-        pressure=si.pressure,
-        vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
-        route=tuple(law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate).tolist()),
-        length=settings.ascent,
-        area=settings.area,
-        most_liquid=si.cloud_water if settings.rain else math.inf,
-    )
+    return MoistAscent.over_ground(settings, settings.ascent, np.linspace(0.0, _top(settings), 400))
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

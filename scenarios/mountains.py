@@ -33,7 +33,7 @@ from atmosbox.scene.ascent import (
     rise,
 )
 from atmosbox.scene.ascent.display import THEORY
-from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene.engines import EXACT, suited_engine, used
 from atmosbox.scene.panels import over_time
 
 if TYPE_CHECKING:
@@ -93,24 +93,11 @@ def _height(settings: Settings, share: float) -> float:
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the journey according to theory."""
-    si = settings.si
     heights = [_height(settings, share) for share in np.linspace(0.0, 1.0, 400)]
-    return MoistAscent(
-        molecules=settings.molecules,
-        diameter=si.diameter,
-        temperature=si.temperature,
-        pressure=si.pressure,
-        vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
-        route=tuple(law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate).tolist()),
-        length=settings.travel,
-        area=settings.area,
-        most_liquid=si.cloud_water if settings.rain else math.inf,
-    )
+    return MoistAscent.over_ground(settings, settings.travel, heights)
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -161,35 +148,20 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the way, and of temperature and water along it."""
-    rain = (
-        Line("elapsed_time", "rain_mixing_ratio", "rain"),
-        Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
-    )
+    time, rains, start = "elapsed_time", settings.rain, settings.temperature
+    rain = Line(time, "rain_mixing_ratio", "rain"), Line(time, "rain_mixing_ratio_theory", "rain, theory", "theory")
+    adiabat = Line(time, "adiabat_temperature", "theory", "theory")
+    around = Line(time, "environment_temperature", "environment", "environment")
     warm = over_time(
-        "It arrives warmer than it set out" if settings.rain else "It arrives as warm as it set out",
-        {"parcel_temperature": "parcel"},
-        "temperature",
-        "degC",
-        more=(
-            Line("elapsed_time", "adiabat_temperature", "theory", "theory"),
-            Line("elapsed_time", "environment_temperature", "environment", "environment"),
-        ),
-        headline="arrival_temperature",
-        start=settings.temperature,
-        guides=(("y", settings.temperature, ""),),
-    )
+        "It arrives warmer than it set out" if rains else "It arrives as warm as it set out",
+        {"parcel_temperature": "parcel"}, "temperature", "degC", more=(adiabat, around),
+        headline="arrival_temperature", start=start, guides=(("y", start, ""),),
+        note="The ascents take nanoseconds in the box, and hours in the Alps.",
+    )  # fmt: skip
     water = over_time(
-        "Rain has taken part of its water" if settings.rain else "Vapour and cloud",
-        {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"},
-        "mixing ratio",
-        "g kg-1",
-        theory="vapour, theory",
-        more=rain if settings.rain else (),
-        headline="rain" if settings.rain else "",
-    )
-    way = "path of the parcel, from plain to plain"
-    return (
-        replace(atmosphere_panel("Over two mountains", way=way), start=(settings.temperature, settings.pressure)),
-        replace(warm, note="The ascents take nanoseconds in the box, and hours in the Alps."),
-        water,
-    )
+        "Rain has taken part of its water" if rains else "Vapour and cloud",
+        {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"}, "mixing ratio", "g kg-1",
+        theory="vapour, theory", more=rain if rains else (), headline="rain" if rains else "",
+    )  # fmt: skip
+    picture = atmosphere_panel("Over two mountains", way="path of the parcel, from plain to plain")
+    return replace(picture, start=(start, settings.pressure)), warm, water

@@ -25,25 +25,14 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Line,
-    Nuclei,
-    Panel,
-    SceneSettings,
-    Series,
-    Setup,
-    Water,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Nuclei, Water
 from atmosbox.scene.moisture import WARM, moist_air, water
-from atmosbox.scene.panels import over_time
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN
 

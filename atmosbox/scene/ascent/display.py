@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from atmosbox.scene.ascent.drawn_parcels import Parcels, comparable, draw, plann
 from atmosbox.scene.ascent.near_equilibrium import cloud_along
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
-from atmosbox.scene.panels import Line, Panel
+from atmosbox.scene.panels import Line, Panel, over_height
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,48 +39,31 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
     cloud = ascent.base > 1.02 * ascent.top_pressure
     low, base = ascent.pressure / 100.0, ascent.base / 100.0
     start = ascent.temperature - 273.15, low
+    cools = (
+        Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
+        Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
+        Line("dry_air_adiabat_temperature", "parcel_pressure", "without condensation", "reference"),
+        Line("environment_temperature", "environment_pressure", "environment", "environment"),
+    )
+    liquid, vapour = "cloud_liquid_water_mixing_ratio", "humidity_mixing_ratio"
+    water = (
+        Line(liquid, "parcel_pressure", "liquid"),
+        Line(f"{liquid}_theory", "parcel_pressure", "liquid, theory", "theory"),
+        Line(vapour, "parcel_pressure", "vapour"),
+        Line(f"{vapour}_theory", "parcel_pressure", "vapour, theory", "theory"),
+    )
+    shown = [f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]]
+    more: dict[str, Any] = {"start": start}
+    if cloud:
+        # so that the kink is seen, a fifth of the axis lies below it
+        more["y_limits"] = low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)
+        more["guides"] = (("y", base, "cloud base, theory"),)
+        shown.insert(0, "cloud_base")
+    title = "In its cloud it cools more slowly" if cloud else "Too dry for a cloud"
     return (
         replace(atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"), start=start),
-        Panel(
-            "profile",
-            "In its cloud it cools more slowly" if cloud else "Too dry for a cloud",
-            (
-                Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
-                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
-                Line("dry_air_adiabat_temperature", "parcel_pressure", "without condensation", "reference"),
-                Line("environment_temperature", "environment_pressure", "environment", "environment"),
-            ),
-            x_label="temperature",
-            x_unit="degC",
-            headlines=(
-                *(("cloud_base",) if cloud else ()),
-                *(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]),
-            ),
-            y_label="pressure",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-            start=start,
-            # so that the kink is seen, a fifth of the axis lies below it
-            y_limits=(low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)) if cloud else (),
-            guides=(("y", base, "cloud base, theory"),) if cloud else (),
-        ),
-        Panel(
-            "profile",
-            "Vapour becomes liquid",
-            (
-                Line("cloud_liquid_water_mixing_ratio", "parcel_pressure", "liquid"),
-                Line("cloud_liquid_water_mixing_ratio_theory", "parcel_pressure", "liquid, theory", "theory"),
-                Line("humidity_mixing_ratio", "parcel_pressure", "vapour"),
-                Line("humidity_mixing_ratio_theory", "parcel_pressure", "vapour, theory", "theory"),
-            ),
-            x_label="mixing ratio",
-            x_unit="g kg-1",
-            y_label="pressure",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-        ),
+        over_height(title, cools, "temperature", "degC", *shown, pressure=True, **more),
+        over_height("Vapour becomes liquid", water, "mixing ratio", "g kg-1", pressure=True),
     )
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +65,30 @@ class MoistAscent:
     length: float
     area: float
     most_liquid: float = math.inf
+
+    @classmethod
+    def of(
+        cls, settings: Any, length: float, route: Array, temperature: float, pressure: float, dewpoint: float
+    ) -> MoistAscent:
+        """Return the ascent of a scene with the settings molecules, diameter, area, rain and cloud_water."""
+        return cls(
+            molecules=settings.molecules,
+            diameter=settings.si.diameter,
+            temperature=temperature,
+            pressure=pressure,
+            vapour_pressure=float(law.saturation_vapor_pressure(dewpoint)),
+            route=tuple(route.tolist()),
+            length=length,
+            area=settings.area,
+            most_liquid=settings.si.cloud_water if settings.rain else math.inf,
+        )
+
+    @classmethod
+    def over_ground(cls, settings: Any, length: float, heights: Sequence[float] | Array) -> MoistAscent:
+        """Return the ascent through these heights [m] in air of a constant lapse rate; see `of`."""
+        si = settings.si
+        route = law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate)
+        return cls.of(settings, length, route, si.temperature, si.pressure, si.dewpoint)
 
     @property
     def top_pressure(self) -> float:
