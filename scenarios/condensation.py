@@ -93,15 +93,9 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] =
     if not settings.drops:
         return Mist(water(start.scale), kT=1.0, nuclei=heat, area=settings.area * start.side * start.side)
     ball = settings.drop_size * MOLECULE
-    return Drops(
-        water(start.scale),
-        kT=1.0,
-        nuclei=heat,
-        position=tuple((float(x), float(y), float(z)) for x, y, z in place),
-        nucleus=ball,
-        nucleus_mass=CORE,
-        molecule_radius=ball,
-    )
+    position = tuple((float(x), float(y), float(z)) for x, y, z in place)
+    size = {"nucleus": ball, "nucleus_mass": CORE, "molecule_radius": ball}
+    return Drops(water(start.scale), kT=1.0, nuclei=heat, position=position, **size)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -193,18 +187,13 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     # if only few molecules came and went, blocks tell little of the error: use a Poisson number with this memory
     few = start.flux * faces * start.face * lasted < FEW
     alone = math.sqrt(2.0 * memory / lasted * share / start.full) if few else 0.0
+    humid, wet = late.relative_humidity_theory, late.water_vapor_partial_pressure_theory
+    both = late.condensation_rate_theory
     rows = (
-        (
-            "relative_humidity",
-            vapour / start.saturated,
-            "1",
-            "percent",
-            "relative humidity",
-            late.relative_humidity_theory,
-        ),
-        (vapour.name, vapour, "Pa", "hPa", "vapour pressure", late.water_vapor_partial_pressure_theory),
-        ("condensation_rate", late.condensation_rate, "s-1", "ns-1", "condensation", late.condensation_rate_theory),
-        ("evaporation_rate", late.evaporation_rate, "s-1", "ns-1", "evaporation", late.condensation_rate_theory),
+        ("relative_humidity", vapour / start.saturated, "1", "percent", "relative humidity", humid),
+        (vapour.name, vapour, "Pa", "hPa", "vapour pressure", wet),
+        ("condensation_rate", late.condensation_rate, "s-1", "ns-1", "condensation", both),
+        ("evaporation_rate", late.evaporation_rate, "s-1", "ns-1", "evaporation", both),
     )
     found = []
     for name, measured, unit, shown, label, expected in rows:
@@ -219,29 +208,15 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of vapour pressure and both rates against time, and of the drops if there are any."""
     grown = over_time("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", log=True)
     begun = settings.si.humidity * float(law.saturation_vapor_pressure(settings.si.temperature)) / 100.0
-    return (
-        over_time(
-            "The air becomes saturated",
-            {"water_vapor_partial_pressure": "vapour"},
-            "vapour pressure",
-            "hPa",
-            log=True,
-            parts=PARTS,
-            headline="mean_water_vapor_partial_pressure",
-            theory="saturation, prescribed",
-            start=begun,
-            note="Then the vapour pressure fluctuates by chance.",
-        ),
-        over_time(
-            "Then as many condense as evaporate",
-            {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
-            "molecules per time",
-            "ns-1",
-            log=True,
-            parts=PARTS,
-            headline="mean_condensation_rate",
-            theory="theory",
-            note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
-        ),
-        *((grown,) if settings.drops else ()),
-    )
+    vapour = over_time(
+        "The air becomes saturated", {"water_vapor_partial_pressure": "vapour"}, "vapour pressure", "hPa",
+        log=True, parts=PARTS, headline="mean_water_vapor_partial_pressure", theory="saturation, prescribed",
+        start=begun, note="Then the vapour pressure fluctuates by chance.",
+    )  # fmt: skip
+    rates = over_time(
+        "Then as many condense as evaporate",
+        {"condensation_rate": "condensation", "evaporation_rate": "evaporation"}, "molecules per time", "ns-1",
+        log=True, parts=PARTS, headline="mean_condensation_rate", theory="theory",
+        note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
+    )  # fmt: skip
+    return (vapour, rates, grown) if settings.drops else (vapour, rates)

@@ -221,19 +221,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         np.array(_decay(dataset.mixing_amplitude.values, passed, settings.molecules))
         / (_decay(amplitude, passed, settings.molecules)[0])
     )
-    found = [
-        Headline(
-            "diffusion_coefficient",
-            ratio * expected * unit,
-            error * expected * unit,
-            expected * unit,
-            known * expected * unit,
-            reason,
-            "m2 s-1",
-            "mm2 s-1",
-            "diffusion coefficient",
-        )
-    ]
+    sizes = (each * expected * unit for each in (ratio, error, 1.0, known))
+    found = [Headline("diffusion_coefficient", *sizes, reason, "m2 s-1", "mm2 s-1", "diffusion coefficient")]
     # theory includes heat and sound for small waves: if their effect after a mixing time is large, theory is too simple
     place = int(np.abs(passed - 1.0).argmin())
     with_heat, spread, _ = _entropy_spread(float(_aged(amplitude[place])), settings.molecules)
@@ -246,19 +235,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             continue
         place = int(np.abs(passed - moment).argmin())
         mean, spread, steep = _entropy_spread(float(_aged(amplitude[place])), settings.molecules)
-        found.append(
-            Headline(
-                name,
-                float(dataset.mixing_entropy.values[place]),
-                spread,
-                mean if linear else None,
-                known * steep,
-                reason,
-                "1",
-                "1",
-                label,
-            )
-        )
+        value, answer = float(dataset.mixing_entropy.values[place]), mean if linear else None
+        found.append(Headline(name, value, spread, answer, known * steep, reason, "1", "1", label))
     return tuple(found)
 
 
@@ -292,35 +270,18 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the share across the box at three moments, the decay of the difference, and the entropy."""
     lasts = 1e9 * _scale(settings).time / _rate(settings, ideal=False)
     shares = {name: f"{moment * lasts:.2g} ns" for name, moment in MOMENTS.items()}
-    return (
-        over_time(
-            "Left and right become alike",
-            {"mixing_amplitude": "molecules"},
-            "left minus right",
-            theory="theory",
-            headline="diffusion_coefficient",
-        ),
-        over_time(
-            "Mixing increases the entropy",
-            {"mixing_entropy": "molecules"},
-            "entropy / N\u00a0k\u00a0ln\u00a02",
-            theory="theory",
-            headline="entropy_after_one_mixing_time",
-        ),
-        Panel(
-            "line",
-            "The left gas spreads to the right",
-            tuple(
-                line
-                for name, label in shares.items()
-                for line in (
-                    Line("distance", f"left_gas_share_{name}", label, error=f"left_gas_share_{name}_se"),
-                    Line("distance", f"left_gas_share_{name}_theory", "theory", "theory"),
-                )
-            ),
-            x_label="distance from the left wall",
-            y_label="share of the left gas",
-            x_unit="nm",
-            y_unit="percent",
-        ),
-    )
+    alike = over_time(
+        "Left and right become alike", {"mixing_amplitude": "molecules"}, "left minus right",
+        theory="theory", headline="diffusion_coefficient",
+    )  # fmt: skip
+    entropy = over_time(
+        "Mixing increases the entropy", {"mixing_entropy": "molecules"}, "entropy / N\u00a0k\u00a0ln\u00a02",
+        theory="theory", headline="entropy_after_one_mixing_time",
+    )  # fmt: skip
+    lines: list[Line] = []
+    for name, label in shares.items():
+        share = f"left_gas_share_{name}"
+        lines += [Line("distance", share, label, error=f"{share}_se")]
+        lines += [Line("distance", f"{share}_theory", "theory", "theory")]
+    axes = "distance from the left wall", "share of the left gas", "nm", "percent"
+    return alike, entropy, Panel("line", "The left gas spreads to the right", tuple(lines), *axes)

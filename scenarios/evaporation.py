@@ -18,7 +18,7 @@ molecules of vapour. At this size no layer of moist air builds up over the pool,
 """
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -114,26 +114,14 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     start = _start(settings, ideal=engine.ideal)
     scale, n = start.scale, settings.molecules
     substance = water(scale)
-    driver = FollowPressure(
-        [0.0],
-        [rounded(si.pressure / scale.pressure)],
-        mean_free_time=start.free_time,
-        relaxation=start.closing / start.free_time,
-        excess=start.excess,
-    )
+    outside, closing = rounded(si.pressure / scale.pressure), start.closing / start.free_time
+    driver = FollowPressure([0.0], [outside], mean_free_time=start.free_time, relaxation=closing, excess=start.excess)
     pool = Pool(substance, number=settings.pool, kT=1.0)
     parcel = moist_parcel(engine, n, start.vapour, start.sides, driver=driver, liquid=pool, seed=settings.seed)
     boils = float(law.dewpoint(si.pressure)) - 273.15
-    walls = warmed_walls(
-        parcel,
-        settings,
-        "temperature",
-        "temperature of the side walls, insulated at first",
-        range(4),
-        scale.reduced_temperature,
-        low=-20.0,
-        high=min(60.0, boils - 5.0),
-    )
+    help, high = "temperature of the side walls, insulated at first", min(60.0, boils - 5.0)
+    kT = scale.reduced_temperature
+    walls = warmed_walls(parcel, settings, "temperature", help, range(4), kT, low=-20.0, high=high)
     duration = si.duration / scale.time
     end, rest = start.end, start.rest
     left = float(end.liquid)
@@ -267,40 +255,22 @@ def _saturation(late: "xr.Dataset", vapour: Headline, start: AirOverPool, chance
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of temperatures and vapour pressure against time, and of the energies."""
     leave = "leaving_energy_probability_density"
-    return (
-        over_time(
-            "The pool cools, and then the air",
-            {"gas_temperature": "air", "liquid_temperature": "pool"},
-            "temperature",
-            "degC",
-            log=True,
-            parts=PARTS,
-            headline="mean_liquid_temperature",
-            theory="theory",
-            start=settings.temperature,
-        ),
-        over_time(
-            "Until the air is saturated",
-            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
-            "vapour pressure",
-            "hPa",
-            log=True,
-            parts=PARTS,
-            headline="final_humidity",
-            theory="theory",
-        ),
-        Panel(
-            "histogram",
-            "Only molecules of high energy leave",
-            (
-                Line("energy", leave, "leave", error=f"{leave}_se"),
-                Line("energy", f"{leave}_theory", "theory", "theory"),
-                Line("energy", "staying_energy_probability_density", "stay", "environment"),
-            ),
-            x_label="energy of a molecule",
-            y_label="probability density",
-            x_unit="zJ",
-            y_unit="zJ-1",
-            headlines=("energy_of_those_that_leave",),
-        ),
+    log: dict[str, Any] = {"log": True, "parts": PARTS, "theory": "theory"}
+    cools = over_time(
+        "The pool cools, and then the air",
+        {"gas_temperature": "air", "liquid_temperature": "pool"}, "temperature", "degC",
+        headline="mean_liquid_temperature", start=settings.temperature, **log,
+    )  # fmt: skip
+    wet = over_time(
+        "Until the air is saturated",
+        {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
+        "vapour pressure", "hPa", headline="final_humidity", **log,
+    )  # fmt: skip
+    energies = (
+        Line("energy", leave, "leave", error=f"{leave}_se"),
+        Line("energy", f"{leave}_theory", "theory", "theory"),
+        Line("energy", "staying_energy_probability_density", "stay", "environment"),
     )
+    axes = "energy of a molecule", "probability density", "zJ", "zJ-1"
+    title, numbers = "Only molecules of high energy leave", ("energy_of_those_that_leave",)
+    return cools, wet, Panel("histogram", title, energies, *axes, headlines=numbers)

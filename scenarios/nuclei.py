@@ -18,6 +18,7 @@ if these were drop_size times as wide, which changes how soon they grow, and not
 smaller than those in the atmosphere, and need far more vapour.
 """
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -112,18 +113,13 @@ def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
 
 def _side(settings: Settings) -> int:
     """Return the number of drops along a side of the box."""
-    side = 1
-    while side**3 < settings.salted + settings.pure:
-        side += 1
-    return side
+    return math.ceil((settings.salted + settings.pure) ** (1.0 / 3.0) - 1e-9)
 
 
-def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]:
+def _places(settings: Settings, side: float) -> list[tuple[float, ...]]:
     """Return the positions of the drops in a box of a side [length]: on a lattice, as far apart as possible."""
-    along = _side(settings)
-    across = [(k + 0.5) * side / along for k in range(along)]
-    lattice = [(x, y, z) for x in across for y in across for z in across]
-    number = settings.salted + settings.pure
+    along, number = _side(settings), settings.salted + settings.pure
+    lattice = list(itertools.product([(k + 0.5) * side / along for k in range(along)], repeat=3))
     return [lattice[k * len(lattice) // number] for k in range(number)]
 
 
@@ -169,16 +165,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         seed=settings.seed,
         liquid=liquid,
     )
-    return Setup(
-        parcel,
-        scale,
-        settings.si.duration / scale.time,
-        FRAMES,
-        (Air(), Water(), Nuclei(settings.drop_size, RADII)),
-        samples=4,
-        settle=SETTLE,
-        facts=_facts(settings, growth),
-    )
+    duration, measured = settings.si.duration / scale.time, (Air(), Water(), Nuclei(settings.drop_size, RADII))
+    return Setup(parcel, scale, duration, FRAMES, measured, 4, SETTLE, facts=_facts(settings, growth))
 
 
 def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
@@ -256,17 +244,9 @@ def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline
     # each molecule came or left at random
     events = growth.flux * hit.mean() * (time[-1] - time[0]) * (felt.mean() + needed.mean())
     error = math.sqrt(events) / (growth.flux * hit.mean() * (time[-1] - time[0]))
-    return Headline(
-        "humidity_over_drops",
-        float(felt.mean()),
-        error,
-        float(needed.mean() + gained),
-        0.0,
-        CHANCE_ALONE,
-        "1",
-        "percent",
-        "humidity over the drops with salt" if kind.particles else "humidity over the drops of pure water",
-    )
+    label = "humidity over the drops with salt" if kind.particles else "humidity over the drops of pure water"
+    value, answer = float(felt.mean()), float(needed.mean() + gained)
+    return Headline("humidity_over_drops", value, error, answer, 0.0, CHANCE_ALONE, "1", "percent", label)
 
 
 def _left(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
@@ -290,16 +270,12 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
     off = spread * (steep**2 / radius + 0.5 * steep * bent * growth.flux * growth.area(n, kind) * back)
     span, wait = time[-1] - time[1:][late][0], float(back[1:][late].mean())
     error = float((steep * np.sqrt(together))[1:][late].mean()) * math.sqrt(min(2.0 * wait / span, 1.0))
+    value, answer, known = (
+        float(each[late].mean()) for each in (dataset.salted_drop_radius.values, radius[1:], off[1:])
+    )
+    name, label = "salted_drop_radius_at_the_end", "radius of the drops with salt"
     return Headline(
-        "salted_drop_radius_at_the_end",
-        float(dataset.salted_drop_radius[late].mean()),
-        error,
-        float(radius[1:][late].mean()),
-        float(off[1:][late].mean()),
-        "the drops differ by chance, and theory is for equal drops",
-        "m",
-        "nm",
-        "radius of the drops with salt",
+        name, value, error, answer, known, "the drops differ by chance, and theory is for equal drops", "m", "nm", label
     )
 
 
@@ -310,26 +286,15 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     law_of = {"salted": "with salt: Köhler", "pure": "pure water: Kelvin"}
     over = [Line("radius", f"{name}_drop_humidity", law_of[name], "theory") for name in there]
     over += [Line(f"{name}_drop_radius", "saturation_ratio", called[name]) for name in there]
-    return (
-        over_time(
-            "Drops with salt grow, others vanish" if len(there) > 1 else "Drops grow or vanish",
-            {f"{name}_drop_radius": called[name] for name in there},
-            "radius",
-            "nm",
-            more=tuple(Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there),
-            headline="salted_drop_radius_at_the_end" if settings.salted else "",
-        ),
-        Panel(
-            "line",
-            "Above its curve a drop grows",
-            tuple(over),
-            x_label="radius",
-            y_label="relative humidity",
-            x_unit="nm",
-            y_unit="percent",
-            note="Below it shrinks, as pure water does here." if settings.pure else "",
-            headlines=("humidity_over_drops",),
-            guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),),
-            x_limits=(0.5, 2.5),
-        ),
-    )
+    theory = tuple(Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there)
+    grown = over_time(
+        "Drops with salt grow, others vanish" if len(there) > 1 else "Drops grow or vanish",
+        {f"{name}_drop_radius": called[name] for name in there}, "radius", "nm", more=theory,
+        headline="salted_drop_radius_at_the_end" if settings.salted else "",
+    )  # fmt: skip
+    curves = Panel(
+        "line", "Above its curve a drop grows", tuple(over), "radius", "relative humidity", "nm", "percent",
+        note="Below it shrinks, as pure water does here." if settings.pure else "", headlines=("humidity_over_drops",),
+        guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),), x_limits=(0.5, 2.5),
+    )  # fmt: skip
+    return grown, curves
