@@ -128,14 +128,12 @@ def moist_parcel(
     seed
         Seed of the random numbers.
     """
-    gas = moist_air(molecules, vapour)
     return engine.begin(
         Start(molecules, (*WARM, Scattered())),
         length=tuple(sides + 1.0),
         walls=(Specular(),) * 5 + (Piston(),),
-        mass=gas.mass,
-        rotation=gas.rotation,
         seed=seed,
         driver=driver,
         liquid=liquid,
+        **moist_air(molecules, vapour)._asdict(),
     )

@@ -281,26 +281,3 @@ def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> 
         np.asarray(samples, dtype=np.float64)
     )
     return critical
-
-
-def running_mean(values: ArrayLike, block: int) -> NDArray[np.float64]:
-    """Return the mean of each value and its neighbours, the same number on either side, up to half a block.
-
-    Parameters
-    ----------
-    values : (value,)
-        The series.
-    block
-        Number of values of which a mean is taken; one more if it is even.
-
-    Examples
-    --------
-    >>> running_mean([0.0, 3.0, 0.0, 3.0], 3)
-    array([0., 1., 2., 3.])
-    """
-    row = np.asarray(values, float)
-    sums = np.concatenate([[0.0], np.cumsum(row)])
-    place = np.arange(len(row))
-    half = np.minimum(np.minimum(place, len(row) - 1 - place), block // 2)
-    mean: NDArray[np.float64] = (sums[place + half + 1] - sums[place - half]) / (2 * half + 1)
-    return mean

@@ -195,16 +195,9 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
     share = dataset.leaving_energy_probability_density.values * width
     mean = float(middle @ share)
     flux = BOLTZMANN * law.LEAVING_FREEDOM * warm
-    return (
-        Headline(
-            "energy_of_those_that_leave",
-            mean,
-            math.sqrt(float((middle - mean) ** 2 @ share) / left),
-            BOLTZMANN * law.BINDING_TEMPERATURE + flux,
-            flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
-            "molecules leave a pool of few molecules mostly while it is warm by chance",
-            "J",
-            "zJ",
-            "energy of leaving molecules",
-        ),
-    )
+    answer = BOLTZMANN * law.BINDING_TEMPERATURE + flux
+    error = math.sqrt(float((middle - mean) ** 2 @ share) / left)
+    known = flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool)
+    reason = "molecules leave a pool of few molecules mostly while it is warm by chance"
+    name, label = "energy_of_those_that_leave", "energy of leaving molecules"
+    return (Headline(name, mean, error, answer, known, reason, "J", "zJ", label),)
