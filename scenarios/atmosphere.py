@@ -85,10 +85,7 @@ class Settings(SceneSettings):
     height: float = setting(25.0, "km", "height of the ceiling", low=0.1, high=1000.0)
     knudsen: float = setting(0.3, "1", "mean free path at the floor in scale heights", low=0.02, high=10.0)
     floor: str = setting(
-        "heat-bath",
-        "",
-        "kind of floor: heat bath, or smooth so that no heat passes",
-        choices=("heat-bath", "isolated"),
+        "heat-bath", "", "kind of floor: heat bath, or smooth so that no heat passes", choices=("heat-bath", "isolated")
     )
     start: str = setting(
         "uniform",

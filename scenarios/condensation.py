@@ -25,7 +25,7 @@ from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers, Scattered, Start
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.exchange import MoistBox
+from atmosbox.scene.exchange.moist_box import MoistBox
 from atmosbox.scene.instruments import Air, DropSizes, Water
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import WARM, moist_air, nuclei_heat_capacity, water

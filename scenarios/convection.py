@@ -27,17 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import (
-    HeatBath,
-    Maxwell,
-    Periodic,
-    Placed,
-    RandomNumbers,
-    Rotating,
-    Scattered,
-    Specular,
-    Start,
-)
+from atmosbox.engine import HeatBath, Maxwell, Periodic, Placed, RandomNumbers, Rotating, Scattered, Specular, Start
 from atmosbox.errors import Option
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used

@@ -27,7 +27,7 @@ from atmosbox.engine import FollowPressure, Pool
 from atmosbox.errors import Setting
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, suited_engine, used
-from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, temperature_of_those_that_left
+from atmosbox.scene.exchange.pool import AirOverPool, energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.instruments import Air, Leaving, Water
 from atmosbox.scene.knob import open_pool, warmed_walls
@@ -54,10 +54,7 @@ FEW = 100
 """Number of molecules that come or go below which the errors are those of random events, and not from blocks."""
 
 
-ladder = (
-    Series("exact", "duration", (10, 20)),
-    Series("dsmc", "duration", (10, 20, 40)),
-)
+ladder = (Series("exact", "duration", (10, 20)), Series("dsmc", "duration", (10, 20, 40)))
 """Runs worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
 
 

@@ -22,7 +22,8 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Maxwell, Piston, Rotating, Scattered, Specular, Start
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
-from atmosbox.scene.ascent import atmosphere_panel, refuse_descent
+from atmosbox.scene.ascent.display import atmosphere_panel
+from atmosbox.scene.ascent.way import refuse_descent
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.instruments import Air, Environment, Lift
 from atmosbox.scene.knob import altitude

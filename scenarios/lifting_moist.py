@@ -26,15 +26,9 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Panel, SceneSettings, Series, Setup, setting
-from atmosbox.scene.ascent import (
-    MoistAscent,
-    lifted_headlines,
-    lifted_panels,
-    lifted_theory,
-    refuse_descent,
-    refuse_supersaturation,
-    rise,
-)
+from atmosbox.scene.ascent.display import lifted_headlines, lifted_panels, lifted_theory
+from atmosbox.scene.ascent.launch import rise
+from atmosbox.scene.ascent.way import MoistAscent, refuse_descent, refuse_supersaturation
 from atmosbox.scene.engines import EXACT, suited_engine, used
 
 if TYPE_CHECKING:

@@ -22,15 +22,10 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene import sounding as air
-from atmosbox.scene.ascent import (
-    MoistAscent,
-    atmosphere_panel,
-    convection_headlines,
-    lifted_headlines,
-    lifted_theory,
-    refuse_descent,
-    rise,
-)
+from atmosbox.scene.ascent.convection import convection_headlines
+from atmosbox.scene.ascent.display import atmosphere_panel, lifted_headlines, lifted_theory
+from atmosbox.scene.ascent.launch import rise
+from atmosbox.scene.ascent.way import MoistAscent, refuse_descent
 from atmosbox.scene.engines import EXACT, suited_engine, used
 from atmosbox.scene.panels import over_height
 

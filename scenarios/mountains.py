@@ -23,16 +23,10 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
-from atmosbox.scene.ascent import (
-    MoistAscent,
-    atmosphere_panel,
-    comparable,
-    draw,
-    lifted_theory,
-    refuse_supersaturation,
-    rise,
-)
-from atmosbox.scene.ascent.display import THEORY
+from atmosbox.scene.ascent.display import THEORY, atmosphere_panel, lifted_theory
+from atmosbox.scene.ascent.drawn_parcels import comparable, draw
+from atmosbox.scene.ascent.launch import rise
+from atmosbox.scene.ascent.way import MoistAscent, refuse_supersaturation
 from atmosbox.scene.engines import EXACT, suited_engine, used
 from atmosbox.scene.panels import over_time
 
@@ -47,10 +41,7 @@ SAMPLES = 8
 BLOCK = 6
 
 
-ladder = (
-    Series("exact", "travel", (150, 300)),
-    Series("dsmc", "travel", (150, 300, 600, 1200)),
-)
+ladder = (Series("exact", "travel", (150, 300)), Series("dsmc", "travel", (150, 300, 600, 1200)))
 """Runs worth comparing: a fast journey ends too warm, and few molecules scatter."""
 
 

@@ -28,7 +28,8 @@ from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Scattered, Start
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
+from atmosbox.scene.exchange.drop_growth import DropGrowth, DropKind
+from atmosbox.scene.exchange.moist_box import MoistBox
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.instruments import Air, Nuclei, Water
 from atmosbox.scene.moisture import WARM, moist_air, water

@@ -12,22 +12,6 @@ from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any
 
-__all__ = [
-    "ATMOSPHERE_VARIABLES",
-    "DISC_VARIABLES",
-    "KINDS",
-    "ROLES",
-    "SCALES",
-    "SKEWT_AXES",
-    "Line",
-    "Panel",
-    "from_json",
-    "over_height",
-    "over_time",
-    "to_json",
-    "without_headlines",
-]
-
 
 def check_text(what: str, name: str, value: object) -> None:
     """Refuse a value that is not a text, and an empty text."""
@@ -101,14 +85,9 @@ class Line:
 
 KINDS = ("line", "profile", "histogram", "discs", "skewt", "atmosphere")
 SCALES = ("linear", "log")
-SKEWT_AXES = {
-    "x_unit": "degC",
-    "y_unit": "hPa",
-    "x_scale": "linear",
-    "y_scale": "log",
-    "x_invert": False,
-    "y_invert": True,
-}
+_SKEWT_AXES: dict[str, Any] = {
+    "x_unit": "degC", "y_unit": "hPa", "x_scale": "linear", "y_scale": "log", "x_invert": False, "y_invert": True
+}  # fmt: skip
 ATMOSPHERE_VARIABLES = (
     "parcel_temperature",
     "environment_pressure",
@@ -237,7 +216,7 @@ class Panel:
     def _set_skewt_axes(self) -> None:
         """Give the panel the axes of a skew-T, the only ones allowed."""
         defaults = {field.name: field.default for field in fields(self)}
-        for name, value in SKEWT_AXES.items():
+        for name, value in _SKEWT_AXES.items():
             if getattr(self, name) not in (value, defaults[name]):
                 raise ValueError(
                     f"the {name} of the panel {self.title!r} is {getattr(self, name)!r}: "
@@ -276,19 +255,9 @@ def without_headlines(panel: Panel) -> Panel | None:
 
 
 def over_time(
-    title: str,
-    curves: dict[str, str],
-    label: str,
-    unit: str = "",
-    *,
-    theory: str = "",
-    more: tuple[Line, ...] = (),
-    log: bool = False,
-    parts: int = 0,
-    headline: str = "",
-    start: float | None = None,
-    **others: Any,
-) -> Panel:
+    title: str, curves: dict[str, str], label: str, unit: str = "", *, theory: str = "", more: tuple[Line, ...] = (),
+    log: bool = False, parts: int = 0, headline: str = "", start: float | None = None, **others: Any,
+) -> Panel:  # fmt: skip
     """Return a panel of curves over time.
 
     Parameters

@@ -22,14 +22,7 @@ Profile = Callable[[float], float]
 
 
 def rise(
-    ascent: MoistAscent,
-    engine: EngineChoice,
-    *,
-    height: Profile,
-    around: Profile,
-    frames: int,
-    samples: int,
-    seed: int,
+    ascent: MoistAscent, engine: EngineChoice, *, height: Profile, around: Profile, frames: int, samples: int, seed: int
 ) -> Setup:
     """Return a parcel of moist air at the start of its ascent.
 
