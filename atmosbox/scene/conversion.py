@@ -195,16 +195,6 @@ def to_si(value: float, unit: str, *, difference: bool = False) -> float:
     difference
         Whether the value is a difference or an error bar: one of 2 degC is one of 2 K, not of 275.15 K.
 
-    Returns
-    -------
-    float
-        The value in Pa, K, K m-1, 1, ...
-
-    Raises
-    ------
-    UnitError
-        If there is no such unit.
-
     Examples
     --------
     >>> to_si(25.0, "degC"), to_si(1013.25, "hPa"), to_si(0.5, "degC", difference=True)
@@ -225,16 +215,6 @@ def from_si(value: float, unit: str, *, difference: bool = False) -> float:
         The unit wanted.
     difference
         Whether the value is a difference or an error bar, to which no offset is added.
-
-    Returns
-    -------
-    float
-        The value in `unit`.
-
-    Raises
-    ------
-    UnitError
-        If there is no such unit.
 
     Examples
     --------

@@ -17,13 +17,6 @@ class DescribedParcel(Parcel):
 
     It refuses whatever `Parcel` itself refuses, but does not notice molecules that overlap.
 
-    Parameters
-    ----------
-    liquid
-        The liquid in the box; it is not used.
-    well, species, strength, bath
-        The attraction of molecules that attract each other; not used either.
-
     Examples
     --------
     >>> box = DescribedParcel([[1, 2, 2]], [[1, 0, 0]], length=(4, 4, 4))

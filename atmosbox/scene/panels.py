@@ -337,16 +337,6 @@ _FORMAT = 1
 def to_json(panels: Iterable[Panel]) -> str:
     """Return the panels of a figure as the text that is stored in a file.
 
-    Parameters
-    ----------
-    panels : iterable of Panel
-        The panels, in reading order.
-
-    Returns
-    -------
-    str
-        JSON, in ASCII. Fields with their default values are left out.
-
     Examples
     --------
     >>> to_json([Panel("discs", "The box")])
@@ -357,21 +347,6 @@ def to_json(panels: Iterable[Panel]) -> str:
 
 def from_json(text: str) -> tuple[Panel, ...]:
     """Return the panels from the text that is stored in a file.
-
-    Parameters
-    ----------
-    text : str
-        What `to_json` has written.
-
-    Returns
-    -------
-    tuple of Panel
-        The panels, in reading order.
-
-    Raises
-    ------
-    ValueError
-        If the text is no JSON, or was written by another program or by a version with another format.
 
     Examples
     --------

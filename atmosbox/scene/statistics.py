@@ -34,11 +34,6 @@ def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> B
     memory
         Correlation time :math:`\tau` in values, where theory gives it; 0 for independent blocks [1].
 
-    Returns
-    -------
-    BlockAverage
-        ``mean`` and ``standard_error``, of the shape of one value.
-
     Raises
     ------
     ValueError
@@ -110,11 +105,6 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
         each, at most 100, if these are more than ``blocks``. With more blocks the error itself scatters less, and a
         correct run appears four standard errors off less often.
 
-    Returns
-    -------
-    BlockAverage
-        ``mean`` of all values and ``standard_error``, of the shape of one value.
-
     Raises
     ------
     ValueError
@@ -179,11 +169,6 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     blocks
         As in `overlapping_average`.
 
-    Returns
-    -------
-    BlockAverage
-        ``mean`` and ``standard_error``, of the shape of one value.
-
     Examples
     --------
     >>> rng = np.random.default_rng(2)
@@ -222,11 +207,6 @@ def growth_per_step(values: ArrayLike, noise: float, decay: float) -> BlockAvera
         Standard deviation of the mode in air at rest.
     decay
         Rate at which the mode decays in air at rest without buoyancy [1/interval].
-
-    Returns
-    -------
-    BlockAverage
-        Growth and error [1/interval]; not a number if there are fewer than four values beyond the noise.
 
     Examples
     --------

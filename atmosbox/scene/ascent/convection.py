@@ -39,20 +39,9 @@ def convection_headlines(
     *,
     ideal: bool,
 ) -> tuple[Headline, ...]:
-    """Return CAPE, CIN and the levels between which the parcel rises by itself.
+    """Return CAPE, CIN and the levels between which the parcel rises by itself, from a whole ascent.
 
-    Parameters
-    ----------
-    dataset
-        A whole ascent.
-    ascent
-        The ascent that was planned.
-    frames, samples
-        Number of frames of the whole ascent, and number of samples in each.
-    around
-        Function that gives the virtual temperature [K] of the environment at pressures [Pa].
-    ideal
-        Whether molecules have no volume.
+    ``around`` gives the virtual temperature [K] of the environment at pressures [Pa].
     """
     outside, pressure = dataset.environment_pressure.values, dataset.parcel_pressure.values
     warmer = dataset.parcel_density_temperature.values - around(pressure)

@@ -27,15 +27,7 @@ THEORY = "theory is the adiabat of a large parcel, with the known errors of so f
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
-    """Return the panels of temperature against pressure, of vapour and liquid, and of the parcel on its ascent.
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    adiabat
-        Label of the adiabat.
-    """
+    """Return the panels of temperature against pressure, of vapour and liquid, and of the parcel on its ascent."""
     cloud = ascent.base > 1.02 * ascent.top_pressure
     low, base = ascent.pressure / 100.0, ascent.base / 100.0
     start = ascent.temperature - 273.15, low
@@ -68,38 +60,15 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
 
 
 def atmosphere_panel(title: str, headlines: tuple[str, ...] = (), way: str = "") -> Panel:
-    """Return the picture of the parcel on its ascent, with ground, cloud and rain.
-
-    Parameters
-    ----------
-    title
-        Title of the panel.
-    headlines
-        Names of the numbers that are shown with it.
-    way
-        Label of the horizontal axis; empty for a parcel that rises vertically.
-    """
+    """Return the picture of the parcel on its ascent; ``way`` is the label of the horizontal axis, if there is one."""
     line = Line("elapsed_time", "parcel_height", "parcel")
     return Panel("atmosphere", title, (line,), x_label=way, y_label="height", y_unit="km", headlines=headlines)
 
 
 def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict[str, Array]:
-    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed.
+    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed; (frame,).
 
-    Parameters
-    ----------
-    dataset
-        The measured ascent.
-    ascent
-        The ascent that was planned.
-    frames
-        Number of frames of the whole ascent.
-
-    Returns
-    -------
-    dict
-        Arrays (frame,) by the names of the variables: temperature [K], mixing ratios [kg kg-1], relative humidity [1].
-        Liquid above ``largest_haze_mixing_ratio`` is a cloud.
+    Liquid above ``largest_haze_mixing_ratio`` is a cloud.
     """
     pressure = dataset.parcel_pressure.values
     middle = (np.arange(len(pressure)) + 0.5) / frames
@@ -128,19 +97,7 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
 def lifted_headlines(
     dataset: xr.Dataset, ascent: MoistAscent, frames: int, samples: int, *, ideal: bool
 ) -> tuple[Headline, ...]:
-    """Return the cloud base, and the temperature at some pressure levels of an ascent.
-
-    Parameters
-    ----------
-    dataset
-        The measured ascent.
-    ascent
-        The ascent that was planned.
-    frames, samples
-        Number of frames of the whole ascent, and number of samples in each.
-    ideal
-        Whether molecules have no volume.
-    """
+    """Return the cloud base, and the temperature at some pressure levels of an ascent."""
     pressure, outside = dataset.parcel_pressure.values, dataset.environment_pressure.values
     if len(pressure) < BLOCK:
         return ()

@@ -116,18 +116,7 @@ class Parcels(NamedTuple):
 
 
 def draw(ascent: MoistAscent, pressure: Array, frames: int, samples: int, *, ideal: bool) -> Parcels:
-    """Return parcels that rise as the ascent was planned.
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    pressure : (frame,)
-        Pressure of the environment in the middle of each frame that has been recorded [Pa].
-    frames, samples
-        Number of frames of the whole ascent, and number of samples in each.
-    ideal
-        Whether molecules have no volume.
+    """Return parcels at pressures of the environment in the middle of each recorded frame : (frame,) [Pa].
 
     Examples
     --------

@@ -27,19 +27,6 @@ def rise(
     """Return a parcel of moist air at the start of its ascent.
 
     Vapour in excess of saturation condenses in the first moments.
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    engine
-        The engine with its options.
-    height, around
-        Height of the parcel [m] and temperature of the environment [K], as functions of the share of the time, 0 to 1.
-    frames, samples
-        Number of frames of the whole ascent, and number of samples of the parcel in each frame.
-    seed
-        Seed of all random numbers.
     """
     scale, n = ascent.scale, ascent.molecules
     _, sides, excess = ascent.box(ideal=engine.ideal)

@@ -113,15 +113,6 @@ class Cloud(NamedTuple):
         """Return how far a unit of x shifts the gas from the adiabat, as a share of T.
 
         The adiabat is taken at the pressure that the gas has after the shift.
-
-        Parameters
-        ----------
-        density
-            Whether to take the density temperature, which also depends on the molecules of vapour that have condensed.
-
-        Returns
-        -------
-        (moment, 2) ndarray
         """
         gone = np.array([1.0, 0.0]) / self.gas[:, None]
         slope = (self.density_slope if density else self.slope)[:, None]
@@ -176,15 +167,6 @@ def _counted(vapour: Array, liquid: Array, humidity: Array, warming: Array) -> t
     One more is as likely as the relative humidity says; each molecule that joins is missing in the vapour, and warms
     the air. So :math:`P(n + 1) / P(n) = f \, (v + l - n) / v \, e^{-b (n + 1/2 - l)}`.
 
-    Parameters
-    ----------
-    vapour, liquid : (moment,)
-        Numbers v and l of molecules according to theory.
-    humidity : (moment,)
-        Relative humidity f according to theory, at most 1.
-    warming : (moment,)
-        By how much b one more liquid molecule lowers the logarithm of the humidity, because it warms the air.
-
     Examples
     --------
     In clear air the mean is RH / (1 - RH), in a cloud that of theory:
@@ -220,19 +202,6 @@ def cloud_along(
 
     .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
               \approx 2.6 \, s .
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    pressure : (moment,)
-        Pressures in the order in which the parcel meets them [Pa].
-    share : (moment,)
-        Share of the time of the whole ascent that has passed at each of them, 0 to 1.
-    ideal
-        Whether molecules have no volume.
-    path
-        Temperature and water at these pressures, if they are known already.
 
     Examples
     --------

@@ -188,18 +188,6 @@ class MoistAscent:
 def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "the pressure at the ground") -> None:
     """Refuse an ascent that does not go up.
 
-    Parameters
-    ----------
-    top_pressure, ground_pressure
-        Pressure at the end and at the start of the ascent [hPa].
-    ground
-        Name of the pressure at the start, for the message.
-
-    Raises
-    ------
-    SettingError
-        If the top is less than 2 % below the ground.
-
     Examples
     --------
     >>> refuse_descent(990.0, 1000.0)
@@ -219,11 +207,6 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
 
 def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     """Refuse a dewpoint above the temperature, both in degC.
-
-    Raises
-    ------
-    SettingError
-        If the air holds more vapour than saturation.
 
     Examples
     --------

@@ -118,13 +118,6 @@ class MoistBox:
         The volume of real molecules is too small to show this: drops s times too wide have s^3 times the volume. The
         last factor counts the ways to divide L molecules among D drops; an empty drop has none to lose.
 
-        Parameters
-        ----------
-        liquid, drops : (time,)
-            Number L of molecules in the drops, and number D of drops.
-        ball
-            Radius of the sphere that a molecule fills, and of a nucleus [diameter].
-
         Examples
         --------
         >>> air = MoistBox(10_000, 293.15, 1e5, 1.5)
@@ -147,11 +140,6 @@ class MoistBox:
         molecules. A hit carries 3 kT. With the share x of the vapour and :math:`\ell = L/kT`,
 
         .. math:: \frac{4 V}{A \bar c_v} + \frac{x \ell^2}{3} \frac{4 V}{\bar c_a} \left[\frac1A + \frac1{A_w}\right].
-
-        Parameters
-        ----------
-        faces
-            Area of the liquid, in faces of the box.
         """
         latent = law.BINDING_TEMPERATURE / self.temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
         find, cool = (4.0 * self.side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))

@@ -176,17 +176,7 @@ def temperature_of_those_that_left(dataset: xr.Dataset) -> float:
 
 
 def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int) -> tuple[Headline, ...]:
-    """Return the mean energy of the molecules that leave, if many have left a pool of many molecules.
-
-    Parameters
-    ----------
-    dataset
-        The run.
-    start
-        The air over its pool.
-    few
-        Least number of molecules that must have left, and of molecules in the pool.
-    """
+    """Return the mean energy of the molecules that leave, if many have left a pool of many molecules."""
     left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
     if min(left, start.pool) < few or not np.isfinite(dataset.liquid_temperature.values).all():
         return ()
