@@ -25,7 +25,7 @@ from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers, Scattered, Start
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.exchange.moist_box import MoistBox
+from atmosbox.scene.exchange.moist_box import MoistBox, refuse_vapour_alone
 from atmosbox.scene.instruments import Air, DropSizes, Water
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import WARM, moist_air, nuclei_heat_capacity, water
@@ -75,16 +75,7 @@ class Settings(SceneSettings):
 
     def check(self) -> None:
         """Refuse so much vapour that no air is left."""
-        most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
-        if self.si.humidity > most:
-            problem = f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC"
-            raise self.refusal("humidity", problem, at_most=math.floor(100.0 * most))
-
-
-def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air at the start, according to theory."""
-    si = settings.si
-    return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
+        refuse_vapour_alone(self)
 
 
 def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] = ()) -> Liquid:
@@ -101,7 +92,7 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] =
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the moist air between its walls."""
     n, drops = settings.molecules, settings.drops
-    start = _start(settings, ideal=engine.ideal)
+    start = MoistBox.of(settings, ideal=engine.ideal)
     scale, length = start.scale, (start.side + 1.0,) * 3
     gas = moist_air(n, start.vapour)
     box: dict[str, Any] = {"length": length, "walls": (HeatBath(1.0),) * 6, "seed": settings.seed, **gas._asdict()}
@@ -149,7 +140,7 @@ def _faces(settings: Settings, start: MoistBox) -> float:
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return saturation at the temperature of the walls, and the rate at which its vapour hits the liquid."""
-    start = _start(settings, ideal=used(dataset).ideal)
+    start = MoistBox.of(settings, ideal=used(dataset).ideal)
     walls = dataset.wall_temperature.values[:, 0]
     warmths, which = np.unique(walls, return_inverse=True)
     share = np.array([start.share_at(float(warmth)) for warmth in warmths])[which]
@@ -173,7 +164,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     The humidity refers to the temperature of the walls. With the temperature of the air in each sample it would come
     out too large: the temperature of so few molecules scatters, and 1 / e_s is convex.
     """
-    start = _start(settings, ideal=used(dataset).ideal)
+    start = MoistBox.of(settings, ideal=used(dataset).ideal)
     faces = _faces(settings, start)
     memory = start.memory(faces)
     # the excess of vapour at the start must have condensed

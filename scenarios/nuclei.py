@@ -29,7 +29,7 @@ from atmosbox.engine import Drops, HeatBath, Scattered, Start
 from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange.drop_growth import DropGrowth, DropKind
-from atmosbox.scene.exchange.moist_box import MoistBox
+from atmosbox.scene.exchange.moist_box import MoistBox, refuse_vapour_alone
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.instruments import Air, Nuclei, Water
 from atmosbox.scene.moisture import WARM, moist_air, water
@@ -81,10 +81,7 @@ class Settings(SceneSettings):
         """Refuse a box without drops, so much vapour that no air is left, and drops that fill the box."""
         if not self.salted + self.pure:
             raise self.refusal("salted", "and pure = 0 leave no drop to watch", at_least=1)
-        most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
-        if self.si.humidity > most:
-            problem = f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC"
-            raise self.refusal("humidity", problem, at_most=math.floor(100.0 * most))
+        refuse_vapour_alone(self)
         growth = _growth(self)
         widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
         gap = growth.box.side * growth.box.scale.length / _side(self)
@@ -92,12 +89,6 @@ class Settings(SceneSettings):
             problem = f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away"
             most = math.floor(50.0 * gap / widest) / 100.0
             raise self.refusal("drop_size", problem, ", or fewer drops", at_most=most)
-
-
-def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air at the start, according to theory."""
-    si = settings.si
-    return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
 
 def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
@@ -109,7 +100,7 @@ def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
     )
     tension = settings.tension * float(law.water_surface_tension(settings.si.temperature))
     there = tuple(kind for kind in kinds if kind.count)
-    return DropGrowth(_start(settings, ideal=ideal), there, settings.water, settings.drop_size, tension)
+    return DropGrowth(MoistBox.of(settings, ideal=ideal), there, settings.water, settings.drop_size, tension)
 
 
 def _side(settings: Settings) -> int:

@@ -27,17 +27,9 @@ class DescribedParcel(Parcel):
     engine: ClassVar[str] = "none"
 
     def __init__(
-        self,
-        position: ArrayLike,
-        velocity: ArrayLike,
-        *,
-        liquid: Liquid | None = None,
-        well: SquareWell | None = None,
-        species: ArrayLike = 0,
-        strength: float = 1.0,
-        bath: RandomBath | None = None,
-        **box: Unpack[Arrangement],
-    ) -> None:
+        self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid | None = None, well: SquareWell | None = None,
+        species: ArrayLike = 0, strength: float = 1.0, bath: RandomBath | None = None, **box: Unpack[Arrangement],
+    ) -> None:  # fmt: skip
         super().__init__(position, velocity, **box)
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:

@@ -72,22 +72,11 @@ def parcel_facts(scale: Scale, sides: NDArray[np.float64]) -> dict[str, str]:
 
 
 def moist_parcel(
-    engine: EngineChoice,
-    molecules: int,
-    vapour: int,
-    sides: NDArray[np.float64],
-    *,
-    driver: FollowPressure,
-    liquid: Liquid,
-    seed: int,
-) -> Parcel:
-    """Return moist air at kT = 1 under a piston, with its liquid; ``sides : (axis,)`` are within reach of the centres."""
+    engine: EngineChoice, molecules: int, vapour: int, sides: NDArray[np.float64], *, driver: FollowPressure,
+    liquid: Liquid, seed: int,
+) -> Parcel:  # fmt: skip
+    """Return moist air at kT = 1 under a piston, with its liquid; ``sides`` are those within reach of the centres."""
     return engine.begin(
-        Start(molecules, (*WARM, Scattered())),
-        length=tuple(sides + 1.0),
-        walls=(Specular(),) * 5 + (Piston(),),
-        seed=seed,
-        driver=driver,
-        liquid=liquid,
-        **moist_air(molecules, vapour)._asdict(),
-    )
+        Start(molecules, (*WARM, Scattered())), length=tuple(sides + 1.0), walls=(Specular(),) * 5 + (Piston(),),
+        seed=seed, driver=driver, liquid=liquid, **moist_air(molecules, vapour)._asdict(),
+    )  # fmt: skip

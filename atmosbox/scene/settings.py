@@ -262,14 +262,9 @@ def by_name(
 
 
 def setting(
-    default: Value,
-    unit: str,
-    help: str,
-    *,
-    low: float | None = None,
-    high: float | None = None,
+    default: Value, unit: str, help: str, *, low: float | None = None, high: float | None = None,
     choices: tuple[str, ...] | None = None,
-) -> Any:
+) -> Any:  # fmt: skip
     """Declare a setting of a scene.
 
     Parameters

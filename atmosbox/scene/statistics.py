@@ -1,4 +1,4 @@
-"""Means with their standard errors, and the critical values of the tests of a distribution."""
+"""Means with their standard errors."""
 
 from typing import NamedTuple
 
@@ -222,42 +222,3 @@ def growth_per_step(values: ArrayLike, noise: float, decay: float) -> BlockAvera
     slope = float(np.polyfit(np.arange(len(grown)), grown, 1)[0])
     error = np.sqrt(max(decay, 0.0) * abs(slope)) / START / max(float(grown[-1] - grown[0]), 1e-9)
     return BlockAverage(np.array(slope), np.array(error))
-
-
-def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
-    r"""Return the largest distance between a measured distribution and the true one that is likely by chance.
-
-    The greatest distance between the two cumulative distributions exceeds this value with a probability of
-    ``level``: 1.358, 1.628 and 1.949 over :math:`\sqrt{n}` at 5 %, 1 % and 0.1 %.
-
-    Parameters
-    ----------
-    samples
-        Number n of independent values [1].
-    level
-        Probability of a false alarm [1].
-
-    Returns
-    -------
-    ndarray
-        Critical distance [1].
-
-    Notes
-    -----
-    This is the limit of large n; for small n it is a little too large, that is on the safe side.
-
-    References
-    ----------
-    .. [1] Massey, F. J. (1951), doi:10.1080/01621459.1951.10500769.
-
-    Examples
-    --------
-    >>> round(float(kolmogorov_smirnov_critical(10_000, 0.01)), 5)
-    0.01628
-    """
-    from scipy import special  # loads slowly
-
-    critical: NDArray[np.float64] = special.kolmogi(np.asarray(level, dtype=np.float64)) / np.sqrt(
-        np.asarray(samples, dtype=np.float64)
-    )
-    return critical

@@ -33,21 +33,10 @@ def rise(
     mean_free_time = ascent.mean_free_time(ideal=engine.ideal)
     duration = ascent.length * mean_free_time
     shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
-    driver = FollowPressure(
-        list(shares * duration),
-        list(rounded(outside / scale.pressure)),
-        mean_free_time=mean_free_time,
-        relaxation=CLOSING,
-        excess=excess,
-    )
-    mist = Mist(
-        water(scale),
-        kT=1.0,
-        nuclei=ascent.nuclei,
-        rain=RAIN / mean_free_time if ascent.rains else 0.0,
-        keeps=ascent.keeps,
-        area=ascent.area * float(sides[0] * sides[1]),
-    )
+    times, pressures = list(shares * duration), list(rounded(outside / scale.pressure))
+    driver = FollowPressure(times, pressures, mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess)
+    rain, area = RAIN / mean_free_time if ascent.rains else 0.0, ascent.area * float(sides[0] * sides[1])
+    mist = Mist(water(scale), kT=1.0, nuclei=ascent.nuclei, rain=rain, keeps=ascent.keeps, area=area)
     parcel = moist_parcel(engine, n, ascent.vapour, sides, driver=driver, liquid=mist, seed=seed)
     lasted = duration * scale.time
     environment = Environment(
@@ -64,7 +53,9 @@ def rise(
 
     planned = planned_cloud(ascent, ideal=engine.ideal)
     known = planned.temperature * drift(planned)
-    base = ascent.base
+    base, rainy = ascent.base, {}
+    if ascent.rains:
+        rainy["rain"] = f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"
     return Setup(
         parcel,
         scale,
@@ -77,11 +68,7 @@ def rise(
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
             "ascent": f"in {duration * scale.time * 1e9:.3g} ns",
-            **(
-                {"rain": f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"}
-                if ascent.rains
-                else {}
-            ),
+            **rainy,
             "known errors": f"theory is {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
         },
         knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),

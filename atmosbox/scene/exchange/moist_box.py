@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,6 +45,12 @@ class MoistBox:
     pressure: float
     humidity: float
     ideal: bool = False
+
+    @classmethod
+    def of(cls, settings: Any, *, ideal: bool) -> MoistBox:
+        """Return the air of a scene with the settings molecules, temperature, pressure and humidity."""
+        si = settings.si
+        return cls(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
     @property
     def scale(self) -> Scale:
@@ -145,3 +152,13 @@ class MoistBox:
         find, cool = (4.0 * self.side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))
         held = self.saturated / self.pressure * latent**2 / 3.0 * cool * (1.0 / faces + 1.0 / 6.0)
         return float((find / faces + held) * self.scale.time)
+
+
+def refuse_vapour_alone(settings: Any) -> None:
+    """Refuse so much vapour that no air is left."""
+    most = settings.si.pressure / float(law.saturation_vapor_pressure(settings.si.temperature))
+    if settings.si.humidity > most:
+        place = f"{settings.pressure:g} hPa and {settings.temperature:g} degC"
+        raise settings.refusal(
+            "humidity", f"is more vapour than there is gas at {place}", at_most=math.floor(100.0 * most)
+        )
