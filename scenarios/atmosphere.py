@@ -355,17 +355,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     # floor minus ceiling differ from the weight by the change of momentum, whose variance is N m kT at either end
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[settled, -1], [0, 1]])[0]) / column.scale.time
     chance = math.sqrt(2.0 * column.per_area * kT) / lasted
-    weight_headline = Headline(
-        "weight_of_the_air",
-        float(weight.mean()),
-        chance * column.scale.pressure,
-        expected,
-        0.0,
-        CHANCE_ALONE,
-        "Pa",
-        "hPa",
-        "surface pressure minus pressure at the top",
-    )
+    label = "surface pressure minus pressure at the top"
+    of_weight = float(weight.mean()), chance * column.scale.pressure, expected, 0.0, CHANCE_ALONE
+    weight_headline = Headline("weight_of_the_air", *of_weight, "Pa", "hPa", label)
     energy = _energy(late)
     memory = column.memory * FRAMES / settings.duration
     temperature = average_beside(late.air_temperature.values, energy, memory)
@@ -384,54 +376,22 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     unknown = fallen * column.room
     reason = "hard molecules crowd on the floor"
     steep = (column.scale_height_of(mean + 1e-4) - column.scale_height_of(mean)) / 1e-4
-    scale_height = Headline(
-        "scale_height",
-        found * length,
-        (near - found) / 1e-4 * error * length,
-        column.scale_height_of(mean) * length,
-        steep * unknown * mean * length,
-        reason,
-        "m",
-        "km",
-        "scale height",
-    )
+    expands, answer = (near - found) / 1e-4, column.scale_height_of(mean) * length
+    of_scale = found * length, expands * error * length, answer, steep * unknown * mean * length, reason
+    scale_height = Headline("scale_height", *of_scale, "m", "km", "scale height")
     # a column that is far lower than a scale height is too even to tell it
-    told = scale_height.standard_error <= 0.1 * column.scale_height_of(mean) * length
+    told = scale_height.standard_error <= 0.1 * answer
+    pressed = math.hypot(weight_headline.standard_error, float(above.standard_error))
+    of_floor = float(force[:, 4].mean()), pressed, expected + ceiling, unknown * ceiling, reason
+    warm, few = kT * column.scale.temperature, 2.0 / (column.dimensions * settings.molecules) * settings.temperature
+    label, finite = "temperature of the column", "the number of molecules is finite"
+    of_height = high * length, error * length, mean * length, unknown * mean * length, reason
     return (
-        Headline(
-            "mean_surface_pressure",
-            float(force[:, 4].mean()),
-            math.hypot(weight_headline.standard_error, float(above.standard_error)),
-            expected + ceiling,
-            unknown * ceiling,
-            reason,
-            "Pa",
-            "hPa",
-            "surface pressure",
-        ),
+        Headline("mean_surface_pressure", *of_floor, "Pa", "hPa", "surface pressure"),
         weight_headline,
-        Headline.of_mean(
-            "mean_temperature",
-            "temperature of the column",
-            temperature,
-            kT * column.scale.temperature,
-            "K",
-            "K",
-            tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
-            reason="the number of molecules is finite",
-        ),
+        Headline.of_mean("mean_temperature", label, temperature, warm, "K", tolerance=few, reason=finite),
         *([scale_height] if told else []),
-        Headline(
-            "mean_height",
-            high * length,
-            error * length,
-            mean * length,
-            unknown * mean * length,
-            reason,
-            "m",
-            "km",
-            "mean height of the molecules",
-        ),
+        Headline("mean_height", *of_height, "m", "km", "mean height of the molecules"),
     )
 
 

@@ -563,9 +563,9 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     )
     found, line = [], "published simulations are a line through all temperatures"
     for name, function, answer, unit, si, shown, label in rows:
-        mean, expected = of(function), None if answer is None else answer * unit
+        (value, error), expected = of(function), None if answer is None else answer * unit
         allowed, reason = (0.0, "") if expected is None else (0.05 * expected, line)
-        found.append(Headline(name, mean[0] * unit, mean[1] * unit, expected, allowed, reason, si, shown, label))
+        found.append(Headline(name, value * unit, error * unit, expected, allowed, reason, si, shown, label))
     return tuple(found)
 
 
@@ -589,7 +589,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "Heat first warms the drop, then evaporates it",
             Line("heat_from_bath", "air_temperature", "molecules"),
         )
-        axes = {"x_unit": "zJ", "y_label": "temperature", "y_unit": "K", "averages": 50}
+        axes: dict[str, Any] = {"x_unit": "zJ", "y_label": "temperature", "y_unit": "K", "averages": 50}
         numbers = "latent_heat", "vapor_heat_capacity"
         heated = Panel("line", title, (line,), "heat supplied", headlines=numbers, **axes)
         return heated, grown, replace(energies, title="Heat separates the molecules")

@@ -218,7 +218,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         np.array(_decay(dataset.mixing_amplitude.values, passed, settings.molecules))
         / (_decay(amplitude, passed, settings.molecules)[0])
     )
-    sizes = (each * expected * unit for each in (ratio, error, 1.0, known))
+    unit *= expected
+    sizes = ratio * unit, error * unit, unit, known * unit
     found = [Headline("diffusion_coefficient", *sizes, reason, "m2 s-1", "mm2 s-1", "diffusion coefficient")]
     # theory includes heat and sound for small waves: if their effect after a mixing time is large, theory is too simple
     place = int(np.abs(passed - 1.0).argmin())

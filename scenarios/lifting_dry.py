@@ -198,10 +198,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         first = float(law.environment_pressure(1000.0, si.temperature, si.pressure, si.lapse_rate))
         measured, chance, expected = at(first)
         lapse, answer = (si.temperature - measured) / 1000.0, (si.temperature - expected) / 1000.0
-        name = "lapse_rate_of_the_first_kilometre"
-        found.append(
-            Headline(name, lapse, chance / 1000.0, answer, 0.0, _THEORY, "K m-1", "K km-1", name.replace("_", " "))
-        )
+        label, sizes = "lapse rate of the first kilometre", (lapse, chance / 1000.0, answer, 0.0)
+        found.append(Headline("lapse_rate_of_the_first_kilometre", *sizes, _THEORY, "K m-1", "K km-1", label))
     return tuple(found)
 
 

@@ -258,8 +258,8 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
     span, wait = time[-1] - time[1:][late][0], float(back[1:][late].mean())
     error = float((steep * np.sqrt(variance))[1:][late].mean()) * math.sqrt(min(2.0 * wait / span, 1.0))
     value, answer = float(dataset.salted_drop_radius[late].mean()), float(radius[1:][late].mean())
-    name, label = "salted_drop_radius_at_the_end", "radius of the drops with salt"
-    return Headline(name, value, error, answer, 0.0, CHANCE_ALONE, "m", "nm", label)
+    label = "radius of the drops with salt"
+    return Headline("salted_drop_radius_at_the_end", value, error, answer, 0.0, CHANCE_ALONE, "m", "nm", label)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

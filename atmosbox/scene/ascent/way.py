@@ -96,11 +96,6 @@ class MoistAscent:
         return min(self.route)
 
     @property
-    def travel(self) -> float:
-        """Total change of the logarithm of the pressure along the ascent, up and down."""
-        return float(np.abs(np.diff(np.log(self.route))).sum())
-
-    @property
     def scale(self) -> Scale:
         """The units of the box."""
         return Scale(self.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
