@@ -85,8 +85,15 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] =
         return Mist(water(start.scale), kT=1.0, nuclei=heat, area=settings.area * start.side * start.side)
     ball = settings.drop_size * MOLECULE
     position = tuple((float(x), float(y), float(z)) for x, y, z in place)
-    size = {"nucleus": ball, "nucleus_mass": CORE, "molecule_radius": ball}
-    return Drops(water(start.scale), kT=1.0, nuclei=heat, position=position, **size)
+    return Drops(
+        water(start.scale),
+        kT=1.0,
+        nuclei=heat,
+        position=position,
+        nucleus=ball,
+        nucleus_mass=CORE,
+        molecule_radius=ball,
+    )
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

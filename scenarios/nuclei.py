@@ -105,13 +105,14 @@ def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
 
 def _side(settings: Settings) -> int:
     """Return the number of drops along a side of the box."""
-    return math.ceil((settings.salted + settings.pure) ** (1.0 / 3.0) - 1e-9)
+    return math.ceil(float(settings.salted + settings.pure) ** (1.0 / 3.0) - 1e-9)
 
 
-def _places(settings: Settings, side: float) -> list[tuple[float, ...]]:
+def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]:
     """Return the positions of the drops in a box of a side [length]: on a lattice, as far apart as possible."""
     along, number = _side(settings), settings.salted + settings.pure
-    lattice = list(itertools.product([(k + 0.5) * side / along for k in range(along)], repeat=3))
+    across = [(k + 0.5) * side / along for k in range(along)]
+    lattice = list(itertools.product(across, across, across))
     return [lattice[k * len(lattice) // number] for k in range(number)]
 
 

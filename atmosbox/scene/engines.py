@@ -258,15 +258,8 @@ class EngineChoice:
     def begin(self, start: Start, *, rng: Source | None = None, **box: Any) -> Parcel:
         """Return a parcel of this engine whose molecules start as declared.
 
-        Parameters
-        ----------
-        start
-            How the molecules start.
-        rng
-            Random numbers of which some have been drawn, if more than the start depends on the seed; otherwise those of
-            the seed of the box.
-        **box
-            The other arguments of `make`.
+        If more than the start depends on the seed, ``rng`` are random numbers of which some have been drawn; otherwise
+        they are those of the seed of the box.
 
         Examples
         --------

@@ -96,8 +96,6 @@ def wall_temperature(
 
     Parameters
     ----------
-    parcel, scale, settings
-        The box, its scale and its settings.
     name
         The setting whose value is the value at the start.
     wall
@@ -121,12 +119,7 @@ def wall_temperature(
 def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float) -> tuple[Knob, ...]:
     """Return the knob that sets gravity; nothing for a box without gravity, whose kernels have none.
 
-    Parameters
-    ----------
-    parcel, scale, settings
-        The box, its scale and its settings.
-    low, high
-        The range, in the unit of the setting; above 0, and widened to include the value at the start.
+    ``low`` and ``high`` are the range in the unit of the setting, above 0; it is widened to include the first value.
 
     Examples
     --------
@@ -155,12 +148,8 @@ def warmed_walls(
 
     Parameters
     ----------
-    parcel, settings
-        The box and its settings.
-    name
-        The setting whose value is the value at the start.
-    help
-        What it is, in one line.
+    name, help
+        The setting whose value is the value at the start, and what the knob is, in one line.
     walls
         Numbers of the walls, in the order of `atmosbox.engine.core.walls.WALL_NAMES`.
     kT
@@ -194,11 +183,6 @@ def warmed_walls(
 def open_pool(parcel: Any) -> Knob:
     """Return the knob that covers a part of a pool, or all of it, with a foil; see `set_open_pool` of the box.
 
-    Parameters
-    ----------
-    parcel
-        A box with a pool.
-
     Examples
     --------
     >>> from atmosbox.simulation.preparation import build, prepare
@@ -215,12 +199,7 @@ def open_pool(parcel: Any) -> Knob:
 def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:
     """Return the knob that moves a parcel up and down, at the speed of its planned ascent.
 
-    Parameters
-    ----------
-    parcel, driver
-        The box, and the driver of its piston.
-    height
-        Height [m] after a share of the ascent, 0 to 1; increasing.
+    ``height`` gives the height [m] after a share of the ascent, 0 to 1; it increases.
 
     Examples
     --------

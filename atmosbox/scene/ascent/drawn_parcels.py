@@ -165,7 +165,7 @@ def _draw(ascent: MoistAscent, pressure: tuple[float, ...], frames: int, samples
         return np.asarray(values.reshape(-1, len(pressure), samples).mean(axis=2))
 
     def seen(weight: Array) -> Array:
-        return np.einsum("pti,ti->pt", x, weight)
+        return np.asarray(np.einsum("pti,ti->pt", x, weight))
 
     return Parcels(
         of_frames(warmth + cloud.clusters() + seen(cloud.seen())),

@@ -49,7 +49,7 @@ def rise(
         return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * samples)).temperature
 
     def scatter(pressure: Array) -> Array:
-        return draw(ascent, pressure, frames, samples, ideal=engine.ideal).warmth.std(axis=0)
+        return np.asarray(draw(ascent, pressure, frames, samples, ideal=engine.ideal).warmth.std(axis=0))
 
     planned = planned_cloud(ascent, ideal=engine.ideal)
     known = planned.temperature * drift(planned)

@@ -127,7 +127,7 @@ class Cloud(NamedTuple):
     @property
     def liquid_scatter(self) -> Array:
         """Standard deviation of the number of liquid molecules, (moment,)."""
-        return np.sqrt(np.linalg.inv(self.resists)[:, 0, 0])
+        return np.asarray(np.sqrt(np.linalg.inv(self.resists)[:, 0, 0]))
 
     def clusters(self, *, density: bool = False) -> Array:
         """Return by how much molecules in clusters warm the parcel, as a share of T or of the density temperature."""

@@ -33,11 +33,6 @@ def weisman_klemp(mixing_ratio: float = 0.014) -> Sounding:
     mixing_ratio
         The largest mixing ratio of vapour, 0.011 to 0.016 in the paper [kg kg-1].
 
-    Returns
-    -------
-    Sounding
-        65 levels, every 250 m up to 16 km.
-
     Raises
     ------
     SettingError

@@ -67,10 +67,6 @@ class Sounding:
         If the columns differ in length, if a value is not finite or does not occur in the atmosphere, or if the levels
         do not make an ascent (see :func:`check_levels`).
 
-    Notes
-    -----
-    The arrays are read-only copies.
-
     Examples
     --------
     >>> pressure = [1000e2, 850e2, 700e2, 500e2, 300e2]

@@ -116,15 +116,7 @@ def read(path: str | os.PathLike[str]) -> Sounding:
     file of IGRA, version 2, or of BUFKIT, of which the first sounding is read; SHARPpy's text; a table with named
     columns (CSV); netCDF with variables as users of MetPy name them.
 
-    Parameters
-    ----------
-    path
-        The file.
-
-    Returns
-    -------
-    Sounding
-        The ascent. See :func:`sounding_of` for the treatment of missing values.
+    See :func:`sounding_of` for the treatment of missing values.
 
     Raises
     ------
