@@ -343,8 +343,8 @@ class SceneSettings:
     def from_user(cls, values: Mapping[str, Any]) -> Self:
         """Return the settings that a user asked for, with the defaults for the rest.
 
-        A name may be spelled with "-" for "_". An unknown name raises UnknownSettingError, a value what `Parameter.parse`
-        raises, and values that do not fit together a SettingError.
+        A name may be spelled with "-" for "_". An unknown name raises UnknownSettingError; a value raises what
+        `Parameter.parse` raises; values that do not fit together raise SettingError.
         """
         return cls(**values)
 
