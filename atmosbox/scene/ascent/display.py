@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.scene.ascent.drawn_parcels import Parcels, comparable, draw, planned_cloud
-from atmosbox.scene.ascent.near_equilibrium import cloud_along
+from atmosbox.scene.ascent.near_equilibrium import Cloud
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import Line, Panel, over_height
@@ -83,7 +83,7 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
         path = ascent.path(pressure, pressure)
     exponent = float(law.moist_air_poisson_exponent(ascent.total_water, ascent.nuclei_heat))
     vapour_pressure = law.vapor_pressure(pressure, path.vapor)
-    cloud = cloud_along(ascent, pressure, middle, path=path)
+    cloud = Cloud(ascent, pressure, middle, path=path)
     found = {
         "dry_air_adiabat_temperature": ascent.temperature * (pressure / ascent.pressure) ** exponent,
         "cloud_liquid_water_mixing_ratio_theory": path.liquid,

@@ -46,7 +46,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
+from atmosbox.scene.ascent.near_equilibrium import Cloud
 from atmosbox.scene.ascent.way import MoistAscent
 
 Array = NDArray[np.float64]
@@ -140,7 +140,7 @@ def along_frames(ascent: MoistAscent, pressure: Array, frames: int, samples: int
     where = np.concatenate([[0.0], middle, [len(logs) / frames]])
     share = np.arange(1, len(logs) * samples + 1) / (frames * samples)
     met = np.interp(share, where, np.concatenate([[np.log(ascent.pressure)], logs, [last]]))
-    return cloud_along(ascent, np.exp(met), share, ideal=ideal)
+    return Cloud(ascent, np.exp(met), share, ideal=ideal)
 
 
 @functools.lru_cache(maxsize=2)
@@ -218,7 +218,7 @@ def walk(cloud: Cloud) -> tuple[Array, Array, Array]:
 def planned_cloud(ascent: MoistAscent, *, ideal: bool = False) -> Cloud:
     """Return theory's parcel along the planned ascent."""
     shares, path = ascent.planned
-    return cloud_along(ascent, np.array(ascent.route), shares, ideal=ideal, path=path)
+    return Cloud(ascent, np.array(ascent.route), shares, ideal=ideal, path=path)
 
 
 def least_cloud(ascent: MoistAscent) -> float:

@@ -23,7 +23,7 @@ FLATNESS = 0.1
 """Height of the box over its width at the start.
 
 The droplets flow with the air, the faster the higher they are, and the random pushes of the molecules on them do random
-work: there is less of it in a low box, see `atmosbox.scene.ascent.random_walk`.
+work: there is less of it in a low box, see `atmosbox.scene.ascent.drawn_parcels`.
 """
 RAIN = 0.05
 """Rate at which each molecule in excess of what the cloud holds falls out as rain, per mean free time at the start.
