@@ -140,15 +140,12 @@ class MoistAscent:
         """Whether liquid falls out."""
         return math.isfinite(self.most_liquid)
 
-    def path(self, pressure: Array, share: Array, scatter: float = 0.0) -> law.ParcelPath:
-        """Return temperature and water at pressures [Pa] that are met at these shares of the time, 0 to 1.
-
-        If it rains, ``scatter`` is the standard deviation of the liquid [kg kg-1], which makes more rain.
-        """
+    def path(self, pressure: Array, share: Array) -> law.ParcelPath:
+        """Return temperature and water at pressures [Pa] that are met at these shares of the time, 0 to 1."""
         start = self.pressure, self.temperature, self.total_water
         if not self.rains:
             return law.parcel_path(pressure, *start, nuclei_heat=self.nuclei_heat)
-        rain = RAIN, self.most_liquid, self.nuclei_heat, scatter
+        rain = RAIN, self.most_liquid, self.nuclei_heat
         return law.raining_path(share * self.length, pressure, *start, *rain)
 
     @functools.cached_property
