@@ -105,7 +105,7 @@ def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
 
 def _side(settings: Settings) -> int:
     """Return the number of drops along a side of the box."""
-    return math.ceil(float(settings.salted + settings.pure) ** (1.0 / 3.0) - 1e-9)
+    return math.ceil(float(np.cbrt(settings.salted + settings.pure)) - 1e-9)
 
 
 def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]:
