@@ -230,26 +230,19 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     slab = (Slab(n),) if settings.start in ("slab", "pool") else ()
 
+    box: Any = parcel  # its strength and its random bath are those of attracting molecules alone
+
     def warm(kelvin: float) -> None:
-        if settings.bath == "random":
-            parcel.set_bath_kT(scale.reduced_temperature(kelvin))  # type: ignore[attr-defined]
-        else:
-            parcel.set_wall_kT(scale.reduced_temperature(kelvin))
+        turn = box.set_bath_kT if settings.bath == "random" else box.set_wall_kT
+        turn(scale.reduced_temperature(kelvin))
 
-    def attract(strength: float) -> None:
-        parcel.set_strength(strength)  # type: ignore[attr-defined]
-
-    knobs = [Knob("attraction", "strength of the attraction", "1", 0.0, 1.0, settings.attraction, attract)]
+    weaker, help, now = "strength of the attraction", "temperature of the thermostat", settings.temperature
+    knobs = [Knob("attraction", weaker, "1", 0.0, 1.0, settings.attraction, lambda share: box.set_strength(share))]
     if settings.bath != "none":
-        low, high = min(60.0, settings.temperature), max(250.0, settings.temperature)
-        knobs.append(Knob("temperature", "temperature of the thermostat", "K", low, high, settings.temperature, warm))
+        knobs.append(Knob("temperature", help, "K", min(60.0, now), max(250.0, now), now, warm))
     fluid = law.SIMPLE_FLUIDS[settings.substance]
     warmth = _warmth(settings)
-    cold = (
-        (f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder.",)
-        if warmth < 0.65
-        else ()
-    )
+    cold = f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder."
     return Setup(
         parcel,
         scale,
@@ -267,7 +260,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "not water": "the critical temperature of water is four times as high (hydrogen bonds are not modelled)",
         },
         knobs=tuple(knobs),
-        doubts=cold,
+        doubts=(cold,) if warmth < 0.65 else (),
     )
 
 

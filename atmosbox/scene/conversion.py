@@ -115,12 +115,8 @@ def spelled(unit: str, power: int = 0) -> str:
     ]
     above = [each for each in factors if "⁻" not in each]
     below = [each.replace("⁻¹", "").replace("⁻", "") for each in factors if "⁻" in each]
-    if not above or not below:
-        words = " ".join(factors)
-    elif len(below) == 1:
-        words = f"{' '.join(above)}/{below[0]}"
-    else:
-        words = f"{' '.join(above)}/({' '.join(below)})"
+    divisor = below[0] if len(below) == 1 else f"({' '.join(below)})"
+    words = f"{' '.join(above)}/{divisor}" if above and below else " ".join(factors)
     return f"{power_of_ten(power)} {words}".rstrip() if power else words
 
 
