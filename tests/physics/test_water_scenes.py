@@ -16,7 +16,7 @@ from atmosbox import scenarios, theory
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
-from atmosbox.scene.ascent.drawn_parcels import along_frames, draw, entropy_gain
+from atmosbox.scene.ascent.drawn_parcels import along_frames, draw, entropy_gain, gathered, walk
 from atmosbox.simulation import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -188,6 +188,18 @@ def test_the_pushes_of_molecules_on_droplets_that_flow_with_the_air_are_those_of
     work = cloud.expansion[30] * cloud.height[30] * rng.uniform(size=400_000) * (after - before)
     # the mean square is known to 0.3 %
     assert pushes == pytest.approx(np.mean(work**2) * cloud.hits[30], rel=0.015)
+
+
+def test_parcels_drawn_at_random_scatter_as_the_liquid_and_the_entropy_of_theory():
+    ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
+    cloud = along_frames(ascent, np.geomspace(1e5, 3e4, 60), 60, 10, ideal=False)
+    x, entropy, rain = walk(cloud)
+    assert not rain.any()
+    # a thousand know each variance by 4.5 %, and liquid of a moment is hardly correlated with that of the next frame
+    assert np.mean(x[:, :, 0].var(axis=0) / cloud.liquid_scatter**2) == pytest.approx(1.0, abs=0.02)
+    gained = np.diff(gathered(entropy_gain(cloud).variance, cloud.moment), prepend=0.0)
+    scatter = np.diff(entropy, axis=1, prepend=0.0).var(axis=0)
+    assert scatter.sum() == pytest.approx(gained.sum(), rel=0.015)
 
 
 def over_mountains(**settings):
