@@ -22,31 +22,21 @@ slab one scale height thick.
 """
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import HeatBath, Maxwell, Periodic, Rotating, Scattered, Specular, Start
 from atmosbox.errors import Setting
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Layers,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Layers
 from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.panels import Line, Panel, over_height
 from atmosbox.scene.statistics import average_beside
-from atmosbox.scene.units import rounded
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -94,10 +84,7 @@ class Settings(SceneSettings):
     height: float = setting(25.0, "km", "height of the ceiling", low=0.1, high=1000.0)
     knudsen: float = setting(0.3, "1", "mean free path at the floor in scale heights", low=0.02, high=10.0)
     floor: str = setting(
-        "heat-bath",
-        "",
-        "kind of floor: heat bath, or smooth so that no heat passes",
-        choices=("heat-bath", "isolated"),
+        "heat-bath", "", "kind of floor: heat bath, or smooth so that no heat passes", choices=("heat-bath", "isolated")
     )
     start: str = setting(
         "uniform",
@@ -367,17 +354,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     # floor minus ceiling differ from the weight by the change of momentum, whose variance is N m kT at either end
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[settled, -1], [0, 1]])[0]) / column.scale.time
     chance = math.sqrt(2.0 * column.per_area * kT) / lasted
-    weight_headline = Headline(
-        "weight_of_the_air",
-        float(weight.mean()),
-        chance * column.scale.pressure,
-        expected,
-        0.0,
-        CHANCE_ALONE,
-        "Pa",
-        "hPa",
-        "surface pressure minus pressure at the top",
-    )
+    label = "surface pressure minus pressure at the top"
+    of_weight = float(weight.mean()), chance * column.scale.pressure, expected, 0.0, CHANCE_ALONE
+    weight_headline = Headline("weight_of_the_air", *of_weight, "Pa", "hPa", label)
     energy = _energy(late)
     memory = column.memory * FRAMES / settings.duration
     temperature = average_beside(late.air_temperature.values, energy, memory)
@@ -396,89 +375,43 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     unknown = fallen * column.room
     reason = "hard molecules crowd on the floor"
     steep = (column.scale_height_of(mean + 1e-4) - column.scale_height_of(mean)) / 1e-4
-    scale_height = Headline(
-        "scale_height",
-        found * length,
-        (near - found) / 1e-4 * error * length,
-        column.scale_height_of(mean) * length,
-        steep * unknown * mean * length,
-        reason,
-        "m",
-        "km",
-        "scale height",
-    )
+    expands, answer = (near - found) / 1e-4, column.scale_height_of(mean) * length
+    of_scale = found * length, expands * error * length, answer, steep * unknown * mean * length, reason
+    scale_height = Headline("scale_height", *of_scale, "m", "km", "scale height")
     # a column that is far lower than a scale height is too even to tell it
-    told = scale_height.standard_error <= 0.1 * column.scale_height_of(mean) * length
+    told = scale_height.standard_error <= 0.1 * answer
+    pressed = math.hypot(weight_headline.standard_error, float(above.standard_error))
+    of_floor = float(force[:, 4].mean()), pressed, expected + ceiling, unknown * ceiling, reason
+    warm, few = kT * column.scale.temperature, 2.0 / (column.dimensions * settings.molecules) * settings.temperature
+    label, finite = "temperature of the column", "the number of molecules is finite"
+    of_height = high * length, error * length, mean * length, unknown * mean * length, reason
     return (
-        Headline(
-            "mean_surface_pressure",
-            float(force[:, 4].mean()),
-            math.hypot(weight_headline.standard_error, float(above.standard_error)),
-            expected + ceiling,
-            unknown * ceiling,
-            reason,
-            "Pa",
-            "hPa",
-            "surface pressure",
-        ),
+        Headline("mean_surface_pressure", *of_floor, "Pa", "hPa", "surface pressure"),
         weight_headline,
-        Headline.of_mean(
-            "mean_temperature",
-            "temperature of the column",
-            temperature,
-            kT * column.scale.temperature,
-            "K",
-            "K",
-            tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
-            reason="the number of molecules is finite",
-        ),
+        Headline.of_mean("mean_temperature", label, temperature, warm, "K", tolerance=few, reason=finite),
         *([scale_height] if told else []),
-        Headline(
-            "mean_height",
-            high * length,
-            error * length,
-            mean * length,
-            unknown * mean * length,
-            reason,
-            "m",
-            "km",
-            "mean height of the molecules",
-        ),
+        Headline("mean_height", *of_height, "m", "km", "mean height of the molecules"),
     )
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return pressure and temperature against height."""
 
-    def against_height(
-        title: str,
-        name: str,
-        theory: str,
-        others: tuple[Line, ...],
-        label: str,
-        unit: str,
-        headlines: tuple[str, ...],
-        **more: Any,
-    ) -> Panel:
-        measured = Line(name, "height", "molecules", error=f"{name}_se")
-        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), *others
-        return Panel(
-            "profile", title, lines, x_label=label, x_unit=unit, y_label="height", y_unit="km", headlines=headlines,
-            **more,
-        )  # fmt: skip
+    def measured(name: str, theory: str) -> tuple[Line, Line]:
+        molecules = Line(name, "height", "molecules", error=f"{name}_se")
+        return molecules, Line(f"{name}_theory", "height", theory, "theory")
 
     real = Line("layer_temperature_standard", "height", "standard atmosphere", "environment")
     scale = 1e-3 * BOLTZMANN * settings.si.temperature / (DRY_AIR.molecule_mass * settings.si.gravity)
     held = -math.expm1(-settings.height / scale)  # the share of an endless column that is below the ceiling
     below = ((share, -scale * math.log1p(-share * held)) for share in (0.5, 0.75, 0.9))
     guides = tuple(("y", height, f"{100.0 * share:.0f} % below {height:.1f} km") for share, height in below)
+    thins, warm = (
+        measured("layer_pressure", "barometric law, finite molecules"),
+        measured("layer_temperature", "isothermal"),
+    )
+    numbers, title = ("scale_height", "mean_surface_pressure"), "At rest it is as warm above as below"
     return (
-        against_height(
-            "The air thins with height", "layer_pressure", "barometric law, finite molecules", (),
-            "pressure", "hPa", ("scale_height", "mean_surface_pressure"), guides=guides,
-        ),
-        against_height(
-            "At rest it is as warm above as below", "layer_temperature", "isothermal", (real,), "temperature", "K",
-            ("mean_temperature",),
-        ),
-    )  # fmt: skip
+        over_height("The air thins with height", thins, "pressure", "hPa", *numbers, guides=guides),
+        over_height(title, (*warm, real), "temperature", "K", "mean_temperature"),
+    )

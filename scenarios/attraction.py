@@ -44,26 +44,13 @@ from atmosbox.engine import (
     lattice_positions,
 )
 from atmosbox.errors import Setting, SettingError
-from atmosbox.scene import (
-    Air,
-    Clusters,
-    EngineChoice,
-    Headline,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    Slab,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT
+from atmosbox.scene.instruments import Air, Clusters, Slab
 from atmosbox.scene.knob import Knob
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.statistics import BlockAverage, overlapping_average
-from atmosbox.scene.units import rounded
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.statistics import BlockAverage, block_average, overlapping_average
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 if TYPE_CHECKING:
@@ -242,26 +229,19 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     slab = (Slab(n),) if settings.start in ("slab", "pool") else ()
 
+    box: Any = parcel  # its strength and its random bath are those of attracting molecules alone
+
     def warm(kelvin: float) -> None:
-        if settings.bath == "random":
-            parcel.set_bath_kT(scale.reduced_temperature(kelvin))  # type: ignore[attr-defined]
-        else:
-            parcel.set_wall_kT(scale.reduced_temperature(kelvin))
+        turn = box.set_bath_kT if settings.bath == "random" else box.set_wall_kT
+        turn(scale.reduced_temperature(kelvin))
 
-    def attract(strength: float) -> None:
-        parcel.set_strength(strength)  # type: ignore[attr-defined]
-
-    knobs = [Knob("attraction", "strength of the attraction", "1", 0.0, 1.0, settings.attraction, attract)]
+    weaker, help, now = "strength of the attraction", "temperature of the thermostat", settings.temperature
+    knobs = [Knob("attraction", weaker, "1", 0.0, 1.0, settings.attraction, lambda share: box.set_strength(share))]
     if settings.bath != "none":
-        low, high = min(60.0, settings.temperature), max(250.0, settings.temperature)
-        knobs.append(Knob("temperature", "temperature of the thermostat", "K", low, high, settings.temperature, warm))
+        knobs.append(Knob("temperature", help, "K", min(60.0, now), max(250.0, now), now, warm))
     fluid = law.SIMPLE_FLUIDS[settings.substance]
     warmth = _warmth(settings)
-    cold = (
-        (f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder.",)
-        if warmth < 0.65
-        else ()
-    )
+    cold = f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder."
     return Setup(
         parcel,
         scale,
@@ -279,7 +259,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "not water": "the critical temperature of water is four times as high (hydrogen bonds are not modelled)",
         },
         knobs=tuple(knobs),
-        doubts=cold,
+        doubts=(cold,) if warmth < 0.65 else (),
     )
 
 
@@ -369,15 +349,10 @@ def _temperature(dataset: "xr.Dataset", settings: Settings) -> Headline:
         gained = dataset.heat_from_wall.values.sum(axis=1)
     heat = abs(float(gained[-1] - gained[SETTLE - 1])) / BOLTZMANN
     touched = max(touched, 1.0)
-    return Headline.of_mean(
-        "mean_temperature",
-        "temperature",
-        BlockAverage(np.asarray(kelvin), np.asarray(settings.temperature * math.sqrt(2.0 / (each * touched)))),
-        settings.temperature,
-        "K",
-        tolerance=heat / (each * touched),
-        reason="heat still flows to the thermostat",
-    )
+    error = settings.temperature * math.sqrt(2.0 / (each * touched))
+    mean, off = BlockAverage(np.asarray(kelvin), np.asarray(error)), heat / (each * touched)
+    name, label, reason = "mean_temperature", "temperature", "heat still flows to the thermostat"
+    return Headline.of_mean(name, label, mean, settings.temperature, "K", tolerance=off, reason=reason)
 
 
 def _gas_energy(density: float, warmth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -411,15 +386,13 @@ def _of_heating(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ..
     first, last = (int(np.flatnonzero(np.append(share >= least, True))[0]) for least in EVAPORATING)
     gone = int(drop[-1]) + 1 if len(drop) else 0
     per_mole, each = scale.energy * AVOGADRO, BOLTZMANN * AVOGADRO
-    found = []
+    found, molar = [], "J mol-1 K-1"
 
     def capacity(name: str, label: str, value: float, error: float, theory: float | None, tolerance: float) -> None:
         known = None if theory is None else theory * each
-        reason = "further virial coefficients are left out" if tolerance else ""
-        found.append(
-            Headline(name, value * each, error * each, known, tolerance * each, reason,
-                     "J mol-1 K-1", "J mol-1 K-1", f"heat capacity {label}")
-        )  # fmt: skip
+        reason, label = "further virial coefficients are left out" if tolerance else "", f"heat capacity {label}"
+        sizes = value * each, error * each, known, tolerance * each
+        found.append(Headline(name, *sizes, reason, molar, molar, label))
 
     def slope(x: np.ndarray, y: np.ndarray) -> float:
         away = x - x.mean()
@@ -467,15 +440,9 @@ def _gas_pressure(dataset: "xr.Dataset", settings: Settings) -> Headline:
         if factor > 0.0 and (density <= THIN or not settings.attraction):
             theory = density * factor * scale.reduced_temperature(settings.temperature) * scale.pressure
             left_out = share * theory
+    mean, reason = BlockAverage(quick.mean, error), "further virial coefficients are left out"
     return Headline.of_mean(
-        "mean_virial_pressure",
-        "pressure",
-        BlockAverage(quick.mean, error),
-        theory,
-        "Pa",
-        "hPa",
-        tolerance=left_out,
-        reason="further virial coefficients are left out",
+        "mean_virial_pressure", "pressure", mean, theory, "Pa", "hPa", tolerance=left_out, reason=reason
     )
 
 
@@ -536,16 +503,10 @@ class _Vapour:
         low, theory, high = (_pressure_of_gas(each, self.kT, self.settings) for each in self.density)
         apart = block_average(self.measured - theory, BLOCKS // 2)
         known = None if self.settings.air or not (np.asarray(theory) > 0.0).all() else float(np.mean(theory))
-        return Headline.of_mean(
-            "mean_virial_pressure",
-            "pressure of the vapour",
-            BlockAverage(np.asarray(self.measured.mean()), apart.standard_error),
-            known,
-            "Pa",
-            "hPa",
-            tolerance=0.0 if known is None else 0.5 * abs(float(np.mean(high - low))),
-            reason="the surface of a drop is not sharp",
-        )
+        off = 0.0 if known is None else 0.5 * abs(float(np.mean(high - low)))
+        name, label, reason = "mean_virial_pressure", "pressure of the vapour", "the surface of a drop is not sharp"
+        mean = BlockAverage(np.asarray(self.measured.mean()), apart.standard_error)
+        return Headline.of_mean(name, label, mean, known, "Pa", "hPa", tolerance=off, reason=reason)
 
 
 def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
@@ -563,137 +524,88 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     share = min(max((dense - mean) / (dense - thin), 0.0), 1.0)
     memory = 2.0 * share * height / math.sqrt(8.0 * kT / math.pi)
     frame = float(late.elapsed_time[1] - late.elapsed_time[0]) * 1e-9 / scale.time
-    series = {}
-    for name, unit in _units_of_slab(scale).items():
-        values = late[name].values / unit
-        series[name] = np.where(np.isfinite(values), values, np.nanmean(values))
+    series = np.array([late[name].values / unit for name, unit in _units_of_slab(scale).items()])
+    series = np.where(np.isfinite(series), series, np.nanmean(series, axis=1, keepdims=True))
+    means = series.mean(axis=1)
 
     def of(function: Callable[..., float]) -> tuple[float, float]:
         """Return a function of the means, and its standard error to first order."""
-        means = {name: float(values.mean()) for name, values in series.items()}
-        value = function(**means)
-        linear = np.zeros(len(series["normal_pressure"]))
-        for name, values in series.items():
-            step = 1e-6 * max(abs(means[name]), 1e-3)
-            slope = (function(**(means | {name: means[name] + step})) - value) / step
-            linear += slope * (values - means[name])
+        value, steps = function(*means), 1e-6 * np.maximum(np.abs(means), 1e-3)
+        slopes = [(function(*(means + step)) - value) / step.sum() for step in np.diag(steps)]
+        linear = slopes @ (series - means[:, None])
         return value, float(block_average(linear, BLOCKS, memory / frame).standard_error)
 
-    def volume(vapor_number_density: float, liquid_number_density: float, **_: float) -> float:
-        return 1.0 / vapor_number_density - 1.0 / liquid_number_density
+    def latent(vapour: float, liquid: float, pressure: float, above: float, below: float, _: float) -> float:
+        return above - below + pressure * (1.0 / vapour - 1.0 / liquid)
 
-    def latent(vapor_well_energy: float, liquid_well_energy: float, normal_pressure: float, **rest: float) -> float:
-        return vapor_well_energy - liquid_well_energy + normal_pressure * volume(**rest)
-
-    def slope(normal_pressure: float, **rest: float) -> float:
-        return latent(normal_pressure=normal_pressure, **rest) * kT / (normal_pressure * volume(**rest))
-
-    def of_gas(vapor_number_density: float, **_: float) -> float:
-        factor = law.square_well_compressibility(vapor_number_density, warmth)
-        return vapor_number_density * kT * float(factor)
-
-    def beyond_gas(normal_pressure: float, **rest: float) -> float:
-        return normal_pressure - of_gas(**rest)
+    def slope(vapour: float, liquid: float, pressure: float, *others: float) -> float:
+        volume = 1.0 / vapour - 1.0 / liquid
+        return latent(vapour, liquid, pressure, *others) * kT / (pressure * volume)
 
     published = float(law.well_vapor_pressure(warmth)) * settings.attraction
-    pressure, energy = scale.pressure, scale.energy * AVOGADRO
-    gas, difference = of(of_gas)[0], of(beyond_gas)
-    third = abs(float(law.square_well_third_virial(warmth))) * series["vapor_number_density"].mean() ** 3
+    steep, depth = 7.1939 * settings.attraction, scale.energy / BOLTZMANN
+    pressure, mole, tension = scale.pressure, scale.energy * AVOGADRO, scale.pressure * scale.length
     rows = (
-        ("liquid_density", of(lambda liquid_number_density, **_: liquid_number_density), None, 0.0, "",
-         scale.mass_density, "kg m-3", "kg m-3", "liquid"),
-        ("vapor_density", of(lambda vapor_number_density, **_: vapor_number_density), None, 0.0, "",
-         scale.mass_density, "kg m-3", "kg m-3", "vapour"),
-        ("vapor_pressure", of(lambda normal_pressure, **_: normal_pressure), published, 0.05 * published,
-         "published simulations are a line through all temperatures", pressure, "Pa", "hPa", "vapour pressure"),
-        ("gas_law", (gas + difference[0], difference[1]), gas, 6.0 * third * gas,
-         "further virial coefficients are left out", pressure, "Pa", "hPa", "the same, and by the vapour's density"),
-        ("latent_heat", of(latent), None, 0.0, "", energy, "J mol-1", "kJ mol-1", "latent heat L"),
-        ("clapeyron_slope", of(slope), 7.1939 * settings.attraction, 0.05 * 7.1939,
-         "published simulations are a line through all temperatures", scale.energy / BOLTZMANN, "K", "K",
-         "L/ΔZ, the slope of ln p against 1/T"),
-        ("mean_surface_tension", of(lambda surface_tension, **_: surface_tension), None, 0.0, "",
-         pressure * scale.length, "N m-1", "mN m-1", "surface tension"),
-    )  # fmt: skip
-    found = []
-    for name, (value, error), answer, allowed, reason, unit, si, shown, label in rows:
-        expected = None if answer is None else answer * unit
-        found.append(Headline(name, value * unit, error * unit, expected, allowed * unit, reason, si, shown, label))
-    return tuple(found)
-
-
-def _heating_panel(title: str) -> Panel:
-    """Return the panel of the temperature against the heat that was supplied."""
-    return Panel(
-        "line",
-        title,
-        (Line("heat_from_bath", "air_temperature", "molecules"),),
-        x_label="heat supplied",
-        x_unit="zJ",
-        y_label="temperature",
-        y_unit="K",
-        averages=50,
-        headlines=("latent_heat", "vapor_heat_capacity"),
+        ("liquid_density", lambda *means: means[1], None, scale.mass_density, "kg m-3", "kg m-3", "liquid"),
+        ("vapor_density", lambda *means: means[0], None, scale.mass_density, "kg m-3", "kg m-3", "vapour"),
+        ("vapor_pressure", lambda *means: means[2], published, pressure, "Pa", "hPa", "vapour pressure"),
+        ("latent_heat", latent, None, mole, "J mol-1", "kJ mol-1", "latent heat L"),
+        ("clapeyron_slope", slope, steep, depth, "K", "K", "L/ΔZ, the slope of ln p against 1/T"),
+        ("mean_surface_tension", lambda *means: means[5], None, tension, "N m-1", "mN m-1", "surface tension"),
     )
+    found, line = [], "published simulations are a line through all temperatures"
+    for name, function, answer, unit, si, shown, label in rows:
+        (value, error), expected = of(function), None if answer is None else answer * unit
+        allowed, reason = (0.0, "") if expected is None else (0.05 * expected, line)
+        found.append(Headline(name, value * unit, error * unit, expected, allowed, reason, si, shown, label))
+    return tuple(found)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the drop, the energy, the temperature and the pressure; for a slab its profile."""
+    start, bath = settings.start, settings.bath
     grown = over_time(
-        "A drop forms in the vapour" if settings.start == "vapour" else "Drop and vapour",
+        "A drop forms in the vapour" if start == "vapour" else "Drop and vapour",
         {"largest_drop_molecule_count": "largest drop", "vapor_molecule_count": "free vapour"},
         f"molecules of {settings.substance}",
     )
+    stores = {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"}
     energies = over_time(
-        "Energy from attraction becomes motion"
-        if settings.bath == "none"
-        else "Energy from attraction goes to the thermostat",
-        {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"}
-        | ({"heat_from_bath": "from the thermostat"} if settings.bath == "random" else {}),
+        "Energy from attraction becomes motion" if bath == "none" else "Energy from attraction goes to the thermostat",
+        stores | ({"heat_from_bath": "from the thermostat"} if bath == "random" else {}),
         "energy",
         "zJ",
     )
-    warming = "Condensation releases heat" if settings.bath == "none" else "At first condensation warms the gas"
-    warm = over_time(
-        warming if settings.start == "vapour" else "Temperature",
-        {"air_temperature": "molecules"},
-        "temperature",
-        "K",
-        start=settings.temperature if settings.start == "vapour" else None,
-        theory="thermostat" if settings.bath != "none" else "",
-        headline="mean_temperature",
-    )
-    if settings.start in ("slab", "pool"):
-        profile = Panel(
-            "profile",
-            "Liquid beside its vapour" if settings.start == "slab" else "A pool, and vapour that thins out",
-            (Line("number_density", "height", "molecules", error="number_density_se"),),
-            x_label="molecules per volume",
-            x_unit="nm-3",
-            y_unit="nm",
-            x_scale="log",
-            headlines=("liquid_density", "vapor_density") if settings.start == "slab" else (),
-        )
-        pressure = over_time(
-            "Its vapour pressure, which was not prescribed",
-            {"normal_pressure": "across the surface"},
-            "pressure",
-            "hPa",
-            theory="published simulations",
-            parts=30,
-            headline="vapor_pressure",
-        )
-        return (profile, pressure, warm) if settings.start == "slab" else (profile, grown, energies, warm)
-    pressure = over_time(
-        "A drop adds hardly any pressure",
-        {"virial_pressure": "molecules"},
-        "pressure",
-        "hPa",
-        theory="" if settings.air else "theory of the free vapour",
-        parts=50,
-        headline="mean_virial_pressure",
-    )
     if settings.heating:
-        heated = replace(energies, title="Heat separates the molecules")
-        return (_heating_panel("Heat first warms the drop, then evaporates it"), grown, heated)
-    return (grown, energies, warm) if settings.bath == "none" else (warm, pressure, grown)
+        title, line = (
+            "Heat first warms the drop, then evaporates it",
+            Line("heat_from_bath", "air_temperature", "molecules"),
+        )
+        axes: dict[str, Any] = {"x_unit": "zJ", "y_label": "temperature", "y_unit": "K", "averages": 50}
+        numbers = "latent_heat", "vapor_heat_capacity"
+        heated = Panel("line", title, (line,), "heat supplied", headlines=numbers, **axes)
+        return heated, grown, replace(energies, title="Heat separates the molecules")
+    warming = "Condensation releases heat" if bath == "none" else "At first condensation warms the gas"
+    warm = over_time(
+        warming if start == "vapour" else "Temperature", {"air_temperature": "molecules"}, "temperature", "K",
+        start=settings.temperature if start == "vapour" else None, theory="thermostat" if bath != "none" else "",
+        headline="mean_temperature",
+    )  # fmt: skip
+    if start in ("slab", "pool"):
+        title = "Liquid beside its vapour" if start == "slab" else "A pool, and vapour that thins out"
+        line, numbers = (
+            Line("number_density", "height", "molecules", error="number_density_se"),
+            ("liquid_density", "vapor_density"),
+        )
+        axes = {"x_unit": "nm-3", "y_unit": "nm", "x_scale": "log", "headlines": numbers if start == "slab" else ()}
+        profile = Panel("profile", title, (line,), "molecules per volume", **axes)
+        pressure = over_time(
+            "Its vapour pressure, which was not prescribed", {"normal_pressure": "across the surface"}, "pressure",
+            unit="hPa", theory="published simulations", parts=30, headline="vapor_pressure",
+        )  # fmt: skip
+        return (profile, pressure, warm) if start == "slab" else (profile, grown, energies, warm)
+    pressure = over_time(
+        "A drop adds hardly any pressure", {"virial_pressure": "molecules"}, "pressure", "hPa",
+        theory="" if settings.air else "theory of the free vapour", parts=50, headline="mean_virial_pressure",
+    )  # fmt: skip
+    return (grown, energies, warm) if bath == "none" else (warm, pressure, grown)

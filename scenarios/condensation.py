@@ -23,25 +23,14 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    DropSizes,
-    EngineChoice,
-    Headline,
-    Panel,
-    SceneSettings,
-    Series,
-    Setup,
-    Water,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.exchange import MoistBox
+from atmosbox.scene.exchange.moist_box import MoistBox, refuse_vapour_alone
+from atmosbox.scene.instruments import Air, DropSizes, Water
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import WARM, moist_air, nuclei_heat_capacity, water
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.statistics import BlockAverage
+from atmosbox.scene.panels import Panel, over_time
+from atmosbox.scene.statistics import BlockAverage, block_average
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,16 +75,7 @@ class Settings(SceneSettings):
 
     def check(self) -> None:
         """Refuse so much vapour that no air is left."""
-        most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
-        if self.si.humidity > most:
-            problem = f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC"
-            raise self.refusal("humidity", problem, at_most=math.floor(100.0 * most))
-
-
-def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air at the start, according to theory."""
-    si = settings.si
-    return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
+        refuse_vapour_alone(self)
 
 
 def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] = ()) -> Liquid:
@@ -104,11 +84,12 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] =
     if not settings.drops:
         return Mist(water(start.scale), kT=1.0, nuclei=heat, area=settings.area * start.side * start.side)
     ball = settings.drop_size * MOLECULE
+    position = tuple((float(x), float(y), float(z)) for x, y, z in place)
     return Drops(
         water(start.scale),
         kT=1.0,
         nuclei=heat,
-        position=tuple((float(x), float(y), float(z)) for x, y, z in place),
+        position=position,
         nucleus=ball,
         nucleus_mass=CORE,
         molecule_radius=ball,
@@ -118,7 +99,7 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] =
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the moist air between its walls."""
     n, drops = settings.molecules, settings.drops
-    start = _start(settings, ideal=engine.ideal)
+    start = MoistBox.of(settings, ideal=engine.ideal)
     scale, length = start.scale, (start.side + 1.0,) * 3
     gas = moist_air(n, start.vapour)
     box: dict[str, Any] = {"length": length, "walls": (HeatBath(1.0),) * 6, "seed": settings.seed, **gas._asdict()}
@@ -166,7 +147,7 @@ def _faces(settings: Settings, start: MoistBox) -> float:
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return saturation at the temperature of the walls, and the rate at which its vapour hits the liquid."""
-    start = _start(settings, ideal=used(dataset).ideal)
+    start = MoistBox.of(settings, ideal=used(dataset).ideal)
     walls = dataset.wall_temperature.values[:, 0]
     warmths, which = np.unique(walls, return_inverse=True)
     share = np.array([start.share_at(float(warmth)) for warmth in warmths])[which]
@@ -190,7 +171,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     The humidity refers to the temperature of the walls. With the temperature of the air in each sample it would come
     out too large: the temperature of so few molecules scatters, and 1 / e_s is convex.
     """
-    start = _start(settings, ideal=used(dataset).ideal)
+    start = MoistBox.of(settings, ideal=used(dataset).ideal)
     faces = _faces(settings, start)
     memory = start.memory(faces)
     # the excess of vapour at the start must have condensed
@@ -204,18 +185,13 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     # if only few molecules came and went, blocks tell little of the error: use a Poisson number with this memory
     few = start.flux * faces * start.face * lasted < FEW
     alone = math.sqrt(2.0 * memory / lasted * share / start.full) if few else 0.0
+    humid, wet = late.relative_humidity_theory, late.water_vapor_partial_pressure_theory
+    both = late.condensation_rate_theory
     rows = (
-        (
-            "relative_humidity",
-            vapour / start.saturated,
-            "1",
-            "percent",
-            "relative humidity",
-            late.relative_humidity_theory,
-        ),
-        (vapour.name, vapour, "Pa", "hPa", "vapour pressure", late.water_vapor_partial_pressure_theory),
-        ("condensation_rate", late.condensation_rate, "s-1", "ns-1", "condensation", late.condensation_rate_theory),
-        ("evaporation_rate", late.evaporation_rate, "s-1", "ns-1", "evaporation", late.condensation_rate_theory),
+        ("relative_humidity", vapour / start.saturated, "1", "percent", "relative humidity", humid),
+        (vapour.name, vapour, "Pa", "hPa", "vapour pressure", wet),
+        ("condensation_rate", late.condensation_rate, "s-1", "ns-1", "condensation", both),
+        ("evaporation_rate", late.evaporation_rate, "s-1", "ns-1", "evaporation", both),
     )
     found = []
     for name, measured, unit, shown, label, expected in rows:
@@ -230,29 +206,15 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of vapour pressure and both rates against time, and of the drops if there are any."""
     grown = over_time("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", log=True)
     begun = settings.si.humidity * float(law.saturation_vapor_pressure(settings.si.temperature)) / 100.0
-    return (
-        over_time(
-            "The air becomes saturated",
-            {"water_vapor_partial_pressure": "vapour"},
-            "vapour pressure",
-            "hPa",
-            log=True,
-            parts=PARTS,
-            headline="mean_water_vapor_partial_pressure",
-            theory="saturation, prescribed",
-            start=begun,
-            note="Then the vapour pressure fluctuates by chance.",
-        ),
-        over_time(
-            "Then as many condense as evaporate",
-            {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
-            "molecules per time",
-            "ns-1",
-            log=True,
-            parts=PARTS,
-            headline="mean_condensation_rate",
-            theory="theory",
-            note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
-        ),
-        *((grown,) if settings.drops else ()),
-    )
+    vapour = over_time(
+        "The air becomes saturated", {"water_vapor_partial_pressure": "vapour"}, "vapour pressure", "hPa",
+        log=True, parts=PARTS, headline="mean_water_vapor_partial_pressure", theory="saturation, prescribed",
+        start=begun, note="Then the vapour pressure fluctuates by chance.",
+    )  # fmt: skip
+    rates = over_time(
+        "Then as many condense as evaporate",
+        {"condensation_rate": "condensation", "evaporation_rate": "evaporation"}, "molecules per time", "ns-1",
+        log=True, parts=PARTS, headline="mean_condensation_rate", theory="theory",
+        note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
+    )  # fmt: skip
+    return (vapour, rates, grown) if settings.drops else (vapour, rates)

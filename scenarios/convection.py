@@ -27,37 +27,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import (
-    HeatBath,
-    Maxwell,
-    Periodic,
-    Placed,
-    RandomNumbers,
-    Rotating,
-    Scattered,
-    Specular,
-    Start,
-)
+from atmosbox.engine import HeatBath, Maxwell, Periodic, Placed, RandomNumbers, Rotating, Scattered, Specular, Start
 from atmosbox.errors import Option
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Flow,
-    Headline,
-    Layers,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Flow, Layers
 from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.panels import Line, Panel, over_height, over_time
 from atmosbox.scene.statistics import BlockAverage, growth_per_step, overlapping_average
-from atmosbox.scene.units import rounded
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -528,31 +507,18 @@ def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecu
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of temperature (or wind) against height, and of the rolls against time."""
+    measured = Line("layer_temperature", "height", "molecules", error="layer_temperature_se")
+    rest = Line("layer_temperature_conduction", "height", "conducted, at rest", "theory")
+    adiabat = Line("layer_temperature_adiabatic", "height", "adiabat", "reference")
+    title = TITLES.get(settings.case, "Mixed air comes nearer to the adiabat")
+    profile = over_height(title, (measured, rest, adiabat), "temperature", "degC", "mean_core_lapse_rate")
     if settings.sides == "warm-and-cold":
-        profile = Panel(
-            "profile", "Wind to the warm side below, back above",
-            (Line("layer_wind", "height", "wind", error="layer_wind_se"),),
-            x_label="wind away from the warm side", x_unit="m s-1", y_label="height", y_unit="km",
-            headlines=("onshore_wind", "return_wind"),
-        )  # fmt: skip
-    else:
-        profile = Panel(
-            "profile", TITLES.get(settings.case, "Mixed air comes nearer to the adiabat"),
-            (
-                Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
-                Line("layer_temperature_conduction", "height", "conducted, at rest", "theory"),
-                Line("layer_temperature_adiabatic", "height", "adiabat", "reference"),
-            ),
-            x_label="temperature", x_unit="degC", y_label="height", y_unit="km",
-            headlines=("mean_core_lapse_rate",),
-        )  # fmt: skip
-    rolls = Panel(
-        "line", "The wind" if settings.case in TITLES else "How fast the rolls turn",
-        (
-            Line("elapsed_time", "roll_speed", "rolls"),
-            Line("elapsed_time", "roll_speed_theory", "linear theory", "theory"),
-        ),
-        x_label="time", x_unit="min", y_label="speed of the rolls", headlines=("mean_wind_speed",),
-        note="The noise of so few molecules is subtracted: below zero is chance.",
+        title, wind = "Wind to the warm side below, back above", "wind away from the warm side"
+        line = Line("layer_wind", "height", "wind", error="layer_wind_se")
+        profile = over_height(title, (line,), wind, "m s-1", "onshore_wind", "return_wind")
+    rolls = over_time(
+        "The wind" if settings.case in TITLES else "How fast the rolls turn",
+        {"roll_speed": "rolls"}, "speed of the rolls", theory="linear theory", headline="mean_wind_speed",
+        x_unit="min", note="The noise of so few molecules is subtracted: below zero is chance.",
     )  # fmt: skip
     return profile, rolls

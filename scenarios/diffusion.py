@@ -22,24 +22,12 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Maxwell, Periodic, Scattered, Specular, Start
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Line,
-    Mixing,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE, CHANCE_LIMIT
-from atmosbox.scene.instruments import MOMENTS
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.units import rounded
+from atmosbox.scene.instruments import MOMENTS, Air, Mixing
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -48,10 +36,7 @@ if TYPE_CHECKING:
 title = "Why do gases mix?"
 level = "school"
 minutes = 15
-ladder = (
-    Series("exact", "molecules", (1500, 3000, 6000, 12_000)),
-    Series("dsmc", "molecules", (12_000, 48_000)),
-)
+ladder = (Series("exact", "molecules", (1500, 3000, 6000, 12_000)), Series("dsmc", "molecules", (12_000, 48_000)))
 """Runs worth comparing: molecules diffuse equally in both engines; with more molecules the shares scatter less."""
 FRAMES = 120
 SKIP = 2
@@ -232,19 +217,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         np.array(_decay(dataset.mixing_amplitude.values, passed, settings.molecules))
         / (_decay(amplitude, passed, settings.molecules)[0])
     )
-    found = [
-        Headline(
-            "diffusion_coefficient",
-            ratio * expected * unit,
-            error * expected * unit,
-            expected * unit,
-            known * expected * unit,
-            reason,
-            "m2 s-1",
-            "mm2 s-1",
-            "diffusion coefficient",
-        )
-    ]
+    unit *= expected
+    sizes = ratio * unit, error * unit, unit, known * unit
+    found = [Headline("diffusion_coefficient", *sizes, reason, "m2 s-1", "mm2 s-1", "diffusion coefficient")]
     # theory includes heat and sound for small waves: if their effect after a mixing time is large, theory is too simple
     place = int(np.abs(passed - 1.0).argmin())
     with_heat, spread, _ = _entropy_spread(float(_aged(amplitude[place])), settings.molecules)
@@ -257,19 +232,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             continue
         place = int(np.abs(passed - moment).argmin())
         mean, spread, steep = _entropy_spread(float(_aged(amplitude[place])), settings.molecules)
-        found.append(
-            Headline(
-                name,
-                float(dataset.mixing_entropy.values[place]),
-                spread,
-                mean if linear else None,
-                known * steep,
-                reason,
-                "1",
-                "1",
-                label,
-            )
-        )
+        value, answer = float(dataset.mixing_entropy.values[place]), mean if linear else None
+        found.append(Headline(name, value, spread, answer, known * steep, reason, "1", "1", label))
     return tuple(found)
 
 
@@ -303,35 +267,18 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the share across the box at three moments, the decay of the difference, and the entropy."""
     lasts = 1e9 * _scale(settings).time / _rate(settings, ideal=False)
     shares = {name: f"{moment * lasts:.2g} ns" for name, moment in MOMENTS.items()}
-    return (
-        over_time(
-            "Left and right become alike",
-            {"mixing_amplitude": "molecules"},
-            "left minus right",
-            theory="theory",
-            headline="diffusion_coefficient",
-        ),
-        over_time(
-            "Mixing increases the entropy",
-            {"mixing_entropy": "molecules"},
-            "entropy / N\u00a0k\u00a0ln\u00a02",
-            theory="theory",
-            headline="entropy_after_one_mixing_time",
-        ),
-        Panel(
-            "line",
-            "The left gas spreads to the right",
-            tuple(
-                line
-                for name, label in shares.items()
-                for line in (
-                    Line("distance", f"left_gas_share_{name}", label, error=f"left_gas_share_{name}_se"),
-                    Line("distance", f"left_gas_share_{name}_theory", "theory", "theory"),
-                )
-            ),
-            x_label="distance from the left wall",
-            y_label="share of the left gas",
-            x_unit="nm",
-            y_unit="percent",
-        ),
-    )
+    alike = over_time(
+        "Left and right become alike", {"mixing_amplitude": "molecules"}, "left minus right",
+        theory="theory", headline="diffusion_coefficient",
+    )  # fmt: skip
+    entropy = over_time(
+        "Mixing increases the entropy", {"mixing_entropy": "molecules"}, "entropy / N\u00a0k\u00a0ln\u00a02",
+        theory="theory", headline="entropy_after_one_mixing_time",
+    )  # fmt: skip
+    lines: list[Line] = []
+    for name, label in shares.items():
+        share = f"left_gas_share_{name}"
+        lines += [Line("distance", share, label, error=f"{share}_se")]
+        lines += [Line("distance", f"{share}_theory", "theory", "theory")]
+    axes = "distance from the left wall", "share of the left gas", "nm", "percent"
+    return alike, entropy, Panel("line", "The left gas spreads to the right", tuple(lines), *axes)

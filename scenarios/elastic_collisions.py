@@ -15,25 +15,13 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import EqualSpeeds, RandomNumbers, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    Discs,
-    EngineChoice,
-    Headline,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    Speeds,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import ROUNDING
-from atmosbox.scene.panels import over_time
-from atmosbox.scene.units import rounded
+from atmosbox.scene.instruments import Air, Discs, Speeds
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.statistics import block_average
+from atmosbox.scene.units import Scale, rounded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -148,30 +136,20 @@ def _memory(dataset: "xr.Dataset") -> float:
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the ratio of mean energies, and the largest errors of energy and momentum."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    changed, off = np.abs(dataset.energy_change.values).max(), dataset.momentum_residual.values.max()
     found = [
         Headline(name, float(largest), 0.0, 0.0, 1e-12, ROUNDING, "1", "1", label)
         for name, largest, label in (
-            (
-                "largest_energy_change",
-                np.abs(dataset.energy_change.values).max(),
-                "largest relative change of the energy",
-            ),
-            (
-                "largest_momentum_residual",
-                dataset.momentum_residual.values.max(),
-                "largest relative error of the momentum",
-            ),
+            ("largest_energy_change", changed, "largest relative change of the energy"),
+            ("largest_momentum_residual", off, "largest relative error of the momentum"),
         )
     ]
     if late.sizes["elapsed_time"] >= 40 and settings.mass_ratio > 1.0:
         mean = float(dataset.kinetic_energy.values[0]) / settings.molecules
-        share = block_average(
-            late.kinetic_energy_light.values / mean, memory=_memory(dataset) / settings.si.duration * FRAMES
-        )
-        label, reason = (
-            "energy of a light disc over the mean",
-            "none: in the long run all discs have the same mean energy",
-        )
+        memory = _memory(dataset) / settings.si.duration * FRAMES
+        share = block_average(late.kinetic_energy_light.values / mean, memory=memory)
+        label = "energy of a light disc over the mean"
+        reason = "none: in the long run all discs have the same mean energy"
         found.insert(0, Headline.of_mean("energy_of_light_discs", label, share, 1.0, "1", reason=reason))
     return tuple(found)
 
@@ -181,25 +159,14 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     unlike = settings.mass_ratio > 1.0
     density = "speed_probability_density"
     light, heavy = ("light half", "heavy half") if unlike else ("one half", "the other")
-    return (
-        Panel("discs", "The discs at the end", x_unit="m"),
-        over_time(
-            "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
-            {"running_energy_light": light, "running_energy_heavy": heavy},
-            "mean energy so\u00a0far",
-            more=(Line("elapsed_time", "kinetic_energy_light_theory", "mean of all: conserved", "theory"),),
-            log=True,
-            headline="energy_of_light_discs",
-        ),
-        Panel(
-            "histogram",
-            "Equal speeds become unequal",
-            (
-                Line("speed", density, "discs", error=f"{density}_se"),
-                Line("speed", f"{density}_theory", "Maxwell, in a plane", "theory"),
-            ),
-            x_label="speed",
-            y_label="probability density",
-            guides=(("x", settings.speed, "start"),),
-        ),
-    )
+    mean = Line("elapsed_time", "kinetic_energy_light_theory", "mean of all: conserved", "theory")
+    shared = over_time(
+        "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
+        {"running_energy_light": light, "running_energy_heavy": heavy}, "mean energy so\u00a0far",
+        more=(mean,), log=True, headline="energy_of_light_discs",
+    )  # fmt: skip
+    measured, guides = Line("speed", density, "discs", error=f"{density}_se"), (("x", settings.speed, "start"),)
+    lines = measured, Line("speed", f"{density}_theory", "Maxwell, in a plane", "theory")
+    title = "Equal speeds become unequal"
+    speeds = Panel("histogram", title, lines, "speed", "probability density", guides=guides)
+    return Panel("discs", "The discs at the end", x_unit="m"), shared, speeds

@@ -18,34 +18,23 @@ molecules of vapour. At this size no layer of moist air builds up over the pool,
 """
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Pool
 from atmosbox.errors import Setting
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Leaving,
-    Line,
-    Panel,
-    SceneSettings,
-    Series,
-    Setup,
-    Water,
-    block_average,
-    setting,
-)
-from atmosbox.scene.engines import EXACT, suited, used
-from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, temperature_of_those_that_left
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
+from atmosbox.scene.engines import EXACT, suited_engine, used
+from atmosbox.scene.exchange.pool import AirOverPool, energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Leaving, Water
 from atmosbox.scene.knob import open_pool, warmed_walls
 from atmosbox.scene.moisture import water
-from atmosbox.scene.panels import over_time
+from atmosbox.scene.panels import Line, Panel, over_time
 from atmosbox.scene.piston import moist_parcel, parcel_facts
+from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -65,10 +54,7 @@ FEW = 100
 """Number of molecules that come or go below which the errors are those of random events, and not from blocks."""
 
 
-ladder = (
-    Series("exact", "duration", (10, 20)),
-    Series("dsmc", "duration", (10, 20, 40)),
-)
+ladder = (Series("exact", "duration", (10, 20)), Series("dsmc", "duration", (10, 20, 40)))
 """Runs worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
 
 
@@ -116,9 +102,7 @@ def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
     )
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -127,26 +111,14 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     start = _start(settings, ideal=engine.ideal)
     scale, n = start.scale, settings.molecules
     substance = water(scale)
-    driver = FollowPressure(
-        [0.0],
-        [rounded(si.pressure / scale.pressure)],
-        mean_free_time=start.free_time,
-        relaxation=start.closing / start.free_time,
-        excess=start.excess,
-    )
+    outside, closing = rounded(si.pressure / scale.pressure), start.closing / start.free_time
+    driver = FollowPressure([0.0], [outside], mean_free_time=start.free_time, relaxation=closing, excess=start.excess)
     pool = Pool(substance, number=settings.pool, kT=1.0)
     parcel = moist_parcel(engine, n, start.vapour, start.sides, driver=driver, liquid=pool, seed=settings.seed)
     boils = float(law.dewpoint(si.pressure)) - 273.15
-    walls = warmed_walls(
-        parcel,
-        settings,
-        "temperature",
-        "temperature of the side walls, insulated at first",
-        range(4),
-        scale.reduced_temperature,
-        low=-20.0,
-        high=min(60.0, boils - 5.0),
-    )
+    help, high = "temperature of the side walls, insulated at first", min(60.0, boils - 5.0)
+    kT = scale.reduced_temperature
+    walls = warmed_walls(parcel, settings, "temperature", help, range(4), kT, low=-20.0, high=high)
     duration = si.duration / scale.time
     end, rest = start.end, start.rest
     left = float(end.liquid)
@@ -280,40 +252,22 @@ def _saturation(late: "xr.Dataset", vapour: Headline, start: AirOverPool, chance
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of temperatures and vapour pressure against time, and of the energies."""
     leave = "leaving_energy_probability_density"
-    return (
-        over_time(
-            "The pool cools, and then the air",
-            {"gas_temperature": "air", "liquid_temperature": "pool"},
-            "temperature",
-            "degC",
-            log=True,
-            parts=PARTS,
-            headline="mean_liquid_temperature",
-            theory="theory",
-            start=settings.temperature,
-        ),
-        over_time(
-            "Until the air is saturated",
-            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
-            "vapour pressure",
-            "hPa",
-            log=True,
-            parts=PARTS,
-            headline="final_humidity",
-            theory="theory",
-        ),
-        Panel(
-            "histogram",
-            "Only molecules of high energy leave",
-            (
-                Line("energy", leave, "leave", error=f"{leave}_se"),
-                Line("energy", f"{leave}_theory", "theory", "theory"),
-                Line("energy", "staying_energy_probability_density", "stay", "environment"),
-            ),
-            x_label="energy of a molecule",
-            y_label="probability density",
-            x_unit="zJ",
-            y_unit="zJ-1",
-            headlines=("energy_of_those_that_leave",),
-        ),
+    log: dict[str, Any] = {"log": True, "parts": PARTS, "theory": "theory"}
+    cools = over_time(
+        "The pool cools, and then the air",
+        {"gas_temperature": "air", "liquid_temperature": "pool"}, "temperature", "degC",
+        headline="mean_liquid_temperature", start=settings.temperature, **log,
+    )  # fmt: skip
+    wet = over_time(
+        "Until the air is saturated",
+        {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
+        "vapour pressure", "hPa", headline="final_humidity", **log,
+    )  # fmt: skip
+    energies = (
+        Line("energy", leave, "leave", error=f"{leave}_se"),
+        Line("energy", f"{leave}_theory", "theory", "theory"),
+        Line("energy", "staying_energy_probability_density", "stay", "environment"),
     )
+    axes = "energy of a molecule", "probability density", "zJ", "zJ-1"
+    title, numbers = "Only molecules of high energy leave", ("energy_of_those_that_leave",)
+    return cools, wet, Panel("histogram", title, energies, *axes, headlines=numbers)

@@ -21,25 +21,15 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Maxwell, Piston, Rotating, Scattered, Specular, Start
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Environment,
-    Headline,
-    Lift,
-    Line,
-    Panel,
-    Scale,
-    SceneSettings,
-    Series,
-    Setup,
-    setting,
-)
-from atmosbox.scene.ascent import atmosphere_panel, refuse_descent
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
+from atmosbox.scene.ascent.display import atmosphere_panel
+from atmosbox.scene.ascent.way import refuse_descent
 from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.instruments import Air, Environment, Lift
 from atmosbox.scene.knob import altitude
+from atmosbox.scene.panels import Line, Panel, over_height
 from atmosbox.scene.piston import CLOSING, free_time_of, parcel_facts, size_of_parcel
-from atmosbox.scene.units import rounded
+from atmosbox.scene.units import Scale, rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -200,32 +190,16 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     reached = [level for level in _levels(settings) if pressure.min() <= 101.0 * level]
     found = [
         Headline(
-            f"temperature_at_{level:.0f}_hpa",
-            *at(100.0 * level),
-            0.0,
-            _THEORY,
-            "K",
-            "degC",
-            f"temperature at {level:.0f} hPa",
+            f"temperature_at_{p:.0f}_hpa", *at(100.0 * p), 0.0, _THEORY, "K", "degC", f"temperature at {p:.0f} hPa"
         )
-        for level in reached
+        for p in reached
     ]
     if dataset.parcel_height.values[-1] >= 1000.0:
         first = float(law.environment_pressure(1000.0, si.temperature, si.pressure, si.lapse_rate))
         measured, chance, expected = at(first)
-        found.append(
-            Headline(
-                "lapse_rate_of_the_first_kilometre",
-                (si.temperature - measured) / 1000.0,
-                chance / 1000.0,
-                (si.temperature - expected) / 1000.0,
-                0.0,
-                _THEORY,
-                "K m-1",
-                "K km-1",
-                "lapse rate of the first kilometre",
-            )
-        )
+        lapse, answer = (si.temperature - measured) / 1000.0, (si.temperature - expected) / 1000.0
+        label, sizes = "lapse rate of the first kilometre", (lapse, chance / 1000.0, answer, 0.0)
+        found.append(Headline("lapse_rate_of_the_first_kilometre", *sizes, _THEORY, "K m-1", "K km-1", label))
     return tuple(found)
 
 
@@ -245,17 +219,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         Line("dry_air_adiabat_temperature", height, "dry air, γ = 7/5", "reference"),
     )
     picture = atmosphere_panel("The parcel expands", tuple(f"temperature_at_{p:.0f}_hpa" for p in _levels(settings)))
+    title = "It cools by ten degrees per kilometre" if settings.rotation else "It cools"
+    shown, start = lines[:3] if settings.rotation else lines, (settings.temperature, 0.0)
     return (
         replace(picture, start=(settings.temperature, settings.pressure)),
-        Panel(
-            "profile",
-            "It cools by ten degrees per kilometre" if settings.rotation else "It cools",
-            lines[:3] if settings.rotation else lines,
-            x_label="temperature",
-            y_label="height",
-            x_unit="degC",
-            y_unit="km",
-            headlines=("lapse_rate_of_the_first_kilometre",),
-            start=(settings.temperature, 0.0),
-        ),
+        over_height(title, shown, "temperature", "degC", "lapse_rate_of_the_first_kilometre", start=start),
     )

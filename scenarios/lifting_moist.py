@@ -20,23 +20,16 @@ water could have. Only one molecule in fifty is water, and even below the cloud 
 """
 
 import functools
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Panel, SceneSettings, Series, Setup, setting
-from atmosbox.scene.ascent import (
-    MoistAscent,
-    lifted_headlines,
-    lifted_panels,
-    lifted_theory,
-    refuse_descent,
-    refuse_supersaturation,
-    rise,
-)
-from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene.ascent.display import lifted_headlines, lifted_panels, lifted_theory
+from atmosbox.scene.ascent.launch import rise
+from atmosbox.scene.ascent.way import MoistAscent, refuse_descent, refuse_supersaturation
+from atmosbox.scene.engines import EXACT, suited_engine, used
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,24 +79,10 @@ def _top(settings: Settings) -> float:
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the ascent according to theory."""
-    si = settings.si
-    heights = np.linspace(0.0, _top(settings), 400)
-    return MoistAscent(
-        molecules=settings.molecules,
-        diameter=si.diameter,
-        temperature=si.temperature,
-        pressure=si.pressure,
-        vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
-        route=tuple(law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate).tolist()),
-        length=settings.ascent,
-        area=settings.area,
-        most_liquid=si.cloud_water if settings.rain else math.inf,
-    )
+    return MoistAscent.over_ground(settings, settings.ascent, np.linspace(0.0, _top(settings), 400))
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

@@ -13,7 +13,6 @@ buoyancy. Exaggerated: some ten kilometres are climbed within nanoseconds.
 """
 
 import functools
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -22,16 +21,12 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene import sounding as air
-from atmosbox.scene.ascent import (
-    MoistAscent,
-    atmosphere_panel,
-    convection_headlines,
-    lifted_headlines,
-    lifted_theory,
-    refuse_descent,
-    rise,
-)
-from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene.ascent.convection import convection_headlines
+from atmosbox.scene.ascent.display import atmosphere_panel, lifted_headlines, lifted_theory
+from atmosbox.scene.ascent.launch import rise
+from atmosbox.scene.ascent.way import MoistAscent, refuse_descent
+from atmosbox.scene.engines import EXACT, suited_engine, used
+from atmosbox.scene.panels import over_height
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,22 +104,13 @@ def _ascent(settings: Settings) -> MoistAscent:
     found = _read(settings.sounding)
     ground = float(found.pressure[0])
     top = max(settings.si.top_pressure, float(found.pressure[-1]))
-    return MoistAscent(
-        molecules=settings.molecules,
-        diameter=settings.si.diameter,
-        temperature=float(found.temperature[0]),
-        pressure=ground,
-        vapour_pressure=float(law.saturation_vapor_pressure(found.dewpoint[0])),
-        route=tuple(np.geomspace(ground, top, 400).tolist()),
-        length=settings.ascent,
-        area=settings.area,
-        most_liquid=settings.si.cloud_water if settings.rain else math.inf,
+    route = np.geomspace(ground, top, 400)
+    return MoistAscent.of(
+        settings, settings.ascent, route, float(found.temperature[0]), ground, float(found.dewpoint[0])
     )
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -217,38 +203,21 @@ def _metpy(settings: Settings) -> tuple[Headline, ...]:
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the skew-T, of the buoyancy, and of the parcel on its ascent."""
     convection, ascent = _convection(settings), _ascent(settings)
-    reached = max(ascent.top_pressure, 0.92 * (convection.el or 0.0))
-    rises = convection.lfc is not None
-    return (
-        Panel(
-            "skewt",
-            f"This air is {_verdict(settings)}",
-            (
-                Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
-                Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
-                Line("environment_temperature", "environment_pressure", "environment", "environment"),
-                Line("environment_dew_point_temperature", "environment_pressure", "dewpoint", "environment"),
-            ),
-            x_label="temperature",
-            y_label="pressure",
-            headlines=("cape", "cin") if rises else (),
-            marks=("cloud_base", "lfc", "el"),
-        ),
-        Panel(
-            "profile",
-            "Higher up it rises by itself" if rises else "It never rises by itself",
-            (Line("parcel_buoyancy", "parcel_pressure", "parcel"),),
-            x_label="buoyancy",
-            y_label="pressure",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-            y_limits=(ascent.pressure / 100.0, reached / 100.0),
-            guides=(("x", 0.0, ""),),
-            areas=True,
-        ),
-        replace(
-            atmosphere_panel("The parcel and its cloud" if convection.el else "The parcel on its way"),
-            start=(ascent.temperature - 273.15, ascent.pressure / 100.0),
-        ),
+    ground, rises = ascent.pressure / 100.0, convection.lfc is not None
+    reached = max(ascent.top_pressure, 0.92 * (convection.el or 0.0)) / 100.0
+    around = "environment_pressure"
+    curves = (
+        Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
+        Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
+        Line("environment_temperature", around, "environment", "environment"),
+        Line("environment_dew_point_temperature", around, "dewpoint", "environment"),
     )
+    numbers, marks = ("cape", "cin") if rises else (), ("cloud_base", "lfc", "el")
+    skewt = Panel(
+        "skewt", f"This air is {_verdict(settings)}", curves, "temperature", "pressure", headlines=numbers, marks=marks
+    )
+    title, buoyancy = "Higher up it rises by itself" if rises else "It never rises by itself", "parcel_buoyancy"
+    lines, axis = (Line(buoyancy, "parcel_pressure", "parcel"),), {"guides": (("x", 0.0, ""),), "areas": True}
+    energy = over_height(title, lines, "buoyancy", "", pressure=True, y_limits=(ground, reached), **axis)
+    picture = atmosphere_panel("The parcel and its cloud" if convection.el else "The parcel on its way")
+    return skewt, energy, replace(picture, start=(ascent.temperature - 273.15, ground))

@@ -23,18 +23,11 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
-from atmosbox.scene.ascent import (
-    MoistAscent,
-    along_frames,
-    atmosphere_panel,
-    finite_size,
-    lifted_theory,
-    refuse_supersaturation,
-    rise,
-    temperature_covariance,
-)
-from atmosbox.scene.ascent.display import THEORY
-from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene.ascent.display import THEORY, atmosphere_panel, lifted_theory
+from atmosbox.scene.ascent.drawn_parcels import comparable, draw
+from atmosbox.scene.ascent.launch import rise
+from atmosbox.scene.ascent.way import MoistAscent, refuse_supersaturation
+from atmosbox.scene.engines import EXACT, suited_engine, used
 from atmosbox.scene.panels import over_time
 
 if TYPE_CHECKING:
@@ -48,10 +41,7 @@ SAMPLES = 8
 BLOCK = 6
 
 
-ladder = (
-    Series("exact", "travel", (150, 300)),
-    Series("dsmc", "travel", (150, 300, 600, 1200)),
-)
+ladder = (Series("exact", "travel", (150, 300)), Series("dsmc", "travel", (150, 300, 600, 1200)))
 """Runs worth comparing: a fast journey ends too warm, and few molecules scatter."""
 
 
@@ -94,24 +84,11 @@ def _height(settings: Settings, share: float) -> float:
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the journey according to theory."""
-    si = settings.si
     heights = [_height(settings, share) for share in np.linspace(0.0, 1.0, 400)]
-    return MoistAscent(
-        molecules=settings.molecules,
-        diameter=si.diameter,
-        temperature=si.temperature,
-        pressure=si.pressure,
-        vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
-        route=tuple(law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate).tolist()),
-        length=settings.travel,
-        area=settings.area,
-        most_liquid=si.cloud_water if settings.rain else math.inf,
-    )
+    return MoistAscent.over_ground(settings, settings.travel, heights)
 
 
-def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless the user names another."""
-    return suited(settings.molecules)
+usual_engine = suited_engine
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -143,76 +120,39 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     pressure = dataset.parcel_pressure.values
     if len(pressure) < FRAMES:
         return ()
-    misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
-    path, ideal = ascent.planned[1], used(dataset).ideal
+    path, late = ascent.planned[1], slice(-BLOCK, None)
+    drawn = draw(ascent, dataset.environment_pressure.values, FRAMES, SAMPLES, ideal=used(dataset).ideal)
     arrival = float(path.temperature[-1])
-    late = slice(-BLOCK, None)
-    outside = dataset.environment_pressure.values
-    chance = temperature_covariance(along_frames(ascent, outside, FRAMES, SAMPLES, ideal=ideal), SAMPLES)[late, late]
-    rains = "rain_mixing_ratio" in dataset
-    more = finite_size.rained(ascent) if rains else path
-    known = float(more.temperature[-1]) - arrival + float(finite_size.drift(ascent, ideal=ideal).warmer[-1])
-    found = [
-        Headline(
-            "arrival_temperature",
-            arrival + float(misfit[late].mean()),
-            arrival * math.sqrt(chance.mean()),
-            arrival + known if finite_size.comparable(ascent) else None,
-            0.0,
-            THEORY,
-            "K",
-            "degC",
-            "temperature in the plain beyond",
-        )
-    ]
-    if rains:
-        found.append(
-            Headline(
-                "rain",
-                float(dataset.rain_mixing_ratio[-1]),
-                finite_size.rain_scatter(ascent),
-                float(more.rain[-1]) if finite_size.comparable(ascent) else None,
-                0.0,
-                "the liquid of so few molecules scatters, and what exceeds the limit rains out",
-                "kg kg-1",
-                "g kg-1",
-                "rain per dry air",
-            )
-        )
+    warmer = arrival * drawn.warmth[:, late].mean(axis=1)
+    value = arrival + float((dataset.parcel_temperature - dataset.adiabat_temperature).values[late].mean())
+    answer = arrival + float(warmer.mean()) if comparable(ascent) else None
+    label, error = "temperature in the plain beyond", float(warmer.std())
+    found = [Headline("arrival_temperature", value, error, answer, 0.0, THEORY, "K", "degC", label)]
+    if "rain_mixing_ratio" in dataset:
+        unit, lost = ascent.total_water / max(ascent.vapour, 1), drawn.rain[:, -1]
+        value, error = float(dataset.rain_mixing_ratio[-1]), unit * max(float(lost.std()), 1.0)
+        answer = float(path.rain[-1]) + unit * float(lost.mean()) if comparable(ascent) else None
+        reason = "the liquid of so few molecules scatters, and what exceeds the limit rains out"
+        found.append(Headline("rain", value, error, answer, 0.0, reason, "kg kg-1", "g kg-1", "rain per dry air"))
     return tuple(found)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the way, and of temperature and water along it."""
-    rain = (
-        Line("elapsed_time", "rain_mixing_ratio", "rain"),
-        Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
-    )
+    time, rains, start = "elapsed_time", settings.rain, settings.temperature
+    rain = Line(time, "rain_mixing_ratio", "rain"), Line(time, "rain_mixing_ratio_theory", "rain, theory", "theory")
+    adiabat = Line(time, "adiabat_temperature", "theory", "theory")
+    around = Line(time, "environment_temperature", "environment", "environment")
     warm = over_time(
-        "It arrives warmer than it set out" if settings.rain else "It arrives as warm as it set out",
-        {"parcel_temperature": "parcel"},
-        "temperature",
-        "degC",
-        more=(
-            Line("elapsed_time", "adiabat_temperature", "theory", "theory"),
-            Line("elapsed_time", "environment_temperature", "environment", "environment"),
-        ),
-        headline="arrival_temperature",
-        start=settings.temperature,
-        guides=(("y", settings.temperature, ""),),
-    )
+        "It arrives warmer than it set out" if rains else "It arrives as warm as it set out",
+        {"parcel_temperature": "parcel"}, "temperature", "degC", more=(adiabat, around),
+        headline="arrival_temperature", start=start, guides=(("y", start, ""),),
+        note="The ascents take nanoseconds in the box, and hours in the Alps.",
+    )  # fmt: skip
     water = over_time(
-        "Rain has taken part of its water" if settings.rain else "Vapour and cloud",
-        {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"},
-        "mixing ratio",
-        "g kg-1",
-        theory="vapour, theory",
-        more=rain if settings.rain else (),
-        headline="rain" if settings.rain else "",
-    )
-    way = "path of the parcel, from plain to plain"
-    return (
-        replace(atmosphere_panel("Over two mountains", way=way), start=(settings.temperature, settings.pressure)),
-        replace(warm, note="The ascents take nanoseconds in the box, and hours in the Alps."),
-        water,
-    )
+        "Rain has taken part of its water" if rains else "Vapour and cloud",
+        {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"}, "mixing ratio", "g kg-1",
+        theory="vapour, theory", more=rain if rains else (), headline="rain" if rains else "",
+    )  # fmt: skip
+    picture = atmosphere_panel("Over two mountains", way="path of the parcel, from plain to plain")
+    return replace(picture, start=(start, settings.pressure)), warm, water

@@ -18,6 +18,7 @@ drop_size times as wide, which changes how soon drops grow, but not which of the
 those in the atmosphere, and need far more vapour.
 """
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -25,25 +26,15 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Drops, HeatBath, Scattered, Start
-from atmosbox.scene import (
-    Air,
-    EngineChoice,
-    Headline,
-    Line,
-    Nuclei,
-    Panel,
-    SceneSettings,
-    Series,
-    Setup,
-    Water,
-    block_average,
-    setting,
-)
+from atmosbox.scene import EngineChoice, Headline, SceneSettings, Series, Setup, setting
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
+from atmosbox.scene.exchange.drop_growth import DropGrowth, DropKind
+from atmosbox.scene.exchange.moist_box import MoistBox, refuse_vapour_alone
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments import Air, Nuclei, Water
 from atmosbox.scene.moisture import WARM, moist_air, water
-from atmosbox.scene.panels import over_time
+from atmosbox.scene.panels import Line, Panel, over_time
+from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -90,10 +81,7 @@ class Settings(SceneSettings):
         """Refuse a box without drops, so much vapour that no air is left, and drops that fill the box."""
         if not self.salted + self.pure:
             raise self.refusal("salted", "and pure = 0 leave no drop to watch", at_least=1)
-        most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
-        if self.si.humidity > most:
-            problem = f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC"
-            raise self.refusal("humidity", problem, at_most=math.floor(100.0 * most))
+        refuse_vapour_alone(self)
         growth = _growth(self)
         widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
         gap = growth.box.side * growth.box.scale.length / _side(self)
@@ -101,12 +89,6 @@ class Settings(SceneSettings):
             problem = f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away"
             most = math.floor(50.0 * gap / widest) / 100.0
             raise self.refusal("drop_size", problem, ", or fewer drops", at_most=most)
-
-
-def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air at the start, according to theory."""
-    si = settings.si
-    return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
 
 def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
@@ -118,23 +100,19 @@ def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
     )
     tension = settings.tension * float(law.water_surface_tension(settings.si.temperature))
     there = tuple(kind for kind in kinds if kind.count)
-    return DropGrowth(_start(settings, ideal=ideal), there, settings.water, settings.drop_size, tension)
+    return DropGrowth(MoistBox.of(settings, ideal=ideal), there, settings.water, settings.drop_size, tension)
 
 
 def _side(settings: Settings) -> int:
     """Return the number of drops along a side of the box."""
-    side = 1
-    while side**3 < settings.salted + settings.pure:
-        side += 1
-    return side
+    return math.ceil(float(np.cbrt(settings.salted + settings.pure)) - 1e-9)
 
 
 def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]:
     """Return the positions of the drops in a box of a side [length]: on a lattice, as far apart as possible."""
-    along = _side(settings)
+    along, number = _side(settings), settings.salted + settings.pure
     across = [(k + 0.5) * side / along for k in range(along)]
-    lattice = [(x, y, z) for x in across for y in across for z in across]
-    number = settings.salted + settings.pure
+    lattice = list(itertools.product(across, across, across))
     return [lattice[k * len(lattice) // number] for k in range(number)]
 
 
@@ -180,16 +158,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         seed=settings.seed,
         liquid=liquid,
     )
-    return Setup(
-        parcel,
-        scale,
-        settings.si.duration / scale.time,
-        FRAMES,
-        (Air(), Water(), Nuclei(settings.drop_size, RADII)),
-        samples=4,
-        settle=SETTLE,
-        facts=_facts(settings, growth),
-    )
+    duration, measured = settings.si.duration / scale.time, (Air(), Water(), Nuclei(settings.drop_size, RADII))
+    return Setup(parcel, scale, duration, FRAMES, measured, 4, SETTLE, facts=_facts(settings, growth))
 
 
 def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
@@ -267,17 +237,9 @@ def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline
     # each molecule came or left at random
     events = growth.flux * hit.mean() * (time[-1] - time[0]) * (felt.mean() + needed.mean())
     error = math.sqrt(events) / (growth.flux * hit.mean() * (time[-1] - time[0]))
-    return Headline(
-        "humidity_over_drops",
-        float(felt.mean()),
-        error,
-        float(needed.mean() + gained),
-        0.0,
-        CHANCE_ALONE,
-        "1",
-        "percent",
-        "humidity over the drops with salt" if kind.particles else "humidity over the drops of pure water",
-    )
+    label = "humidity over the drops with salt" if kind.particles else "humidity over the drops of pure water"
+    value, answer = float(felt.mean()), float(needed.mean() + gained)
+    return Headline("humidity_over_drops", value, error, answer, 0.0, CHANCE_ALONE, "1", "percent", label)
 
 
 def _left(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
@@ -291,27 +253,14 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
     """Return the radius of the drops with salt, and that of theory, which leaves fluctuations out."""
     time = np.append(0.0, dataset.elapsed_time.values * 1e-9)
     number, humidity = growth.path(time)
-    together, apart, back = growth.scatter(time, number, humidity)
-    kind, n = growth.kinds[0], number[0]
-    radius = growth.radius(n, kind)
+    variance, back = growth.scatter(time, number, humidity)
+    radius = growth.radius(number[0], growth.kinds[0])
     steep = law.WATER_VOLUME / (4.0 * math.pi * radius**2)
-    bent = np.abs(growth.over(n + 1.0, kind) - 2.0 * growth.over(n, kind) + growth.over(n - 1.0, kind))
-    # drops of different size have another mean radius than equal drops, and by Koehler's curve they need other vapour
-    spread = together + apart
-    off = spread * (steep**2 / radius + 0.5 * steep * bent * growth.flux * growth.area(n, kind) * back)
     span, wait = time[-1] - time[1:][late][0], float(back[1:][late].mean())
-    error = float((steep * np.sqrt(together))[1:][late].mean()) * math.sqrt(min(2.0 * wait / span, 1.0))
-    return Headline(
-        "salted_drop_radius_at_the_end",
-        float(dataset.salted_drop_radius[late].mean()),
-        error,
-        float(radius[1:][late].mean()),
-        float(off[1:][late].mean()),
-        "the drops differ by chance, and theory is for equal drops",
-        "m",
-        "nm",
-        "radius of the drops with salt",
-    )
+    error = float((steep * np.sqrt(variance))[1:][late].mean()) * math.sqrt(min(2.0 * wait / span, 1.0))
+    value, answer = float(dataset.salted_drop_radius[late].mean()), float(radius[1:][late].mean())
+    label = "radius of the drops with salt"
+    return Headline("salted_drop_radius_at_the_end", value, error, answer, 0.0, CHANCE_ALONE, "m", "nm", label)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
@@ -321,26 +270,15 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     law_of = {"salted": "with salt: Köhler", "pure": "pure water: Kelvin"}
     over = [Line("radius", f"{name}_drop_humidity", law_of[name], "theory") for name in there]
     over += [Line(f"{name}_drop_radius", "saturation_ratio", called[name]) for name in there]
-    return (
-        over_time(
-            "Drops with salt grow, others vanish" if len(there) > 1 else "Drops grow or vanish",
-            {f"{name}_drop_radius": called[name] for name in there},
-            "radius",
-            "nm",
-            more=tuple(Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there),
-            headline="salted_drop_radius_at_the_end" if settings.salted else "",
-        ),
-        Panel(
-            "line",
-            "Above its curve a drop grows",
-            tuple(over),
-            x_label="radius",
-            y_label="relative humidity",
-            x_unit="nm",
-            y_unit="percent",
-            note="Below it shrinks, as pure water does here." if settings.pure else "",
-            headlines=("humidity_over_drops",),
-            guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),),
-            x_limits=(0.5, 2.5),
-        ),
-    )
+    theory = tuple(Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there)
+    grown = over_time(
+        "Drops with salt grow, others vanish" if len(there) > 1 else "Drops grow or vanish",
+        {f"{name}_drop_radius": called[name] for name in there}, "radius", "nm", more=theory,
+        headline="salted_drop_radius_at_the_end" if settings.salted else "",
+    )  # fmt: skip
+    curves = Panel(
+        "line", "Above its curve a drop grows", tuple(over), "radius", "relative humidity", "nm", "percent",
+        note="Below it shrinks, as pure water does here." if settings.pure else "", headlines=("humidity_over_drops",),
+        guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),), x_limits=(0.5, 2.5),
+    )  # fmt: skip
+    return grown, curves

@@ -25,7 +25,7 @@ from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.kernel_table import kernels
 from atmosbox.lab.plan import lab_plan
 from atmosbox.plot.curve import curve
-from atmosbox.scene.ascent.random_walk import _ROTATION, _SHEAR
+from atmosbox.scene.ascent.drawn_parcels import _ROTATION, _SHEAR
 from atmosbox.scene.instruments import Air, Flow, Layers, Mixing, Molecules
 from atmosbox.scene.instruments.lifted_air import Environment, Lift
 from atmosbox.scene.panels import Line, Panel

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from atmosbox.scene.statistics import average_beside, block_average, kolmogorov_smirnov_critical, overlapping_average
+from atmosbox.scene.statistics import average_beside, block_average, overlapping_average
 
 RUNS, VALUES = 4000, 400
 
@@ -53,12 +53,6 @@ def test_a_noisy_series_that_follows_a_slow_one_has_the_error_of_both():
     # 1000 runs that each know a variance by a half or less: 1.6 %, and the regression adds 2 %
     assert stated / variance == pytest.approx(1.0, abs=0.08)
     assert np.mean([each.mean**2 for each in found]) / variance == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / 1000))
-
-
-@pytest.mark.parametrize(("level", "critical"), [(0.05, 1.358), (0.01, 1.628), (0.001, 1.949)])
-def test_kolmogorov_and_smirnovs_critical_values(level, critical):
-    assert kolmogorov_smirnov_critical(1, level) == pytest.approx(critical, abs=5e-4)
-    assert kolmogorov_smirnov_critical(400, level) == pytest.approx(critical / 20.0, abs=5e-5)
 
 
 @pytest.mark.parametrize("memory", [1e6, 1e12, 1e18])

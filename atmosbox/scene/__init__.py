@@ -70,37 +70,10 @@ _HOMES = {
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
-    "LAWS",
-    "Air",
-    "Clusters",
-    "Discs",
-    "DropSizes",
-    "EngineChoice",
-    "Environment",
-    "Flow",
-    "Headline",
-    "Instrument",
-    "Layers",
-    "Leaving",
-    "Lift",
-    "Line",
-    "Mixing",
-    "MoistLift",
-    "Molecules",
-    "Nuclei",
-    "Panel",
-    "Readings",
-    "Scale",
-    "SceneSettings",
-    "Series",
-    "Setup",
-    "Slab",
-    "Speeds",
-    "Water",
-    "block_average",
-    "setting",
-    "wall_laws",
-]
+    "LAWS", "Air", "Clusters", "Discs", "DropSizes", "EngineChoice", "Environment", "Flow", "Headline", "Instrument",
+    "Layers", "Leaving", "Lift", "Line", "Mixing", "MoistLift", "Molecules", "Nuclei", "Panel", "Readings", "Scale",
+    "SceneSettings", "Series", "Setup", "Slab", "Speeds", "Water", "block_average", "setting", "wall_laws",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

@@ -115,12 +115,8 @@ def spelled(unit: str, power: int = 0) -> str:
     ]
     above = [each for each in factors if "⁻" not in each]
     below = [each.replace("⁻¹", "").replace("⁻", "") for each in factors if "⁻" in each]
-    if not above or not below:
-        words = " ".join(factors)
-    elif len(below) == 1:
-        words = f"{' '.join(above)}/{below[0]}"
-    else:
-        words = f"{' '.join(above)}/({' '.join(below)})"
+    divisor = below[0] if len(below) == 1 else f"({' '.join(below)})"
+    words = f"{' '.join(above)}/{divisor}" if above and below else " ".join(factors)
     return f"{power_of_ten(power)} {words}".rstrip() if power else words
 
 
@@ -195,16 +191,6 @@ def to_si(value: float, unit: str, *, difference: bool = False) -> float:
     difference
         Whether the value is a difference or an error bar: one of 2 degC is one of 2 K, not of 275.15 K.
 
-    Returns
-    -------
-    float
-        The value in Pa, K, K m-1, 1, ...
-
-    Raises
-    ------
-    UnitError
-        If there is no such unit.
-
     Examples
     --------
     >>> to_si(25.0, "degC"), to_si(1013.25, "hPa"), to_si(0.5, "degC", difference=True)
@@ -225,16 +211,6 @@ def from_si(value: float, unit: str, *, difference: bool = False) -> float:
         The unit wanted.
     difference
         Whether the value is a difference or an error bar, to which no offset is added.
-
-    Returns
-    -------
-    float
-        The value in `unit`.
-
-    Raises
-    ------
-    UnitError
-        If there is no such unit.
 
     Examples
     --------

@@ -17,13 +17,6 @@ class DescribedParcel(Parcel):
 
     It refuses whatever `Parcel` itself refuses, but does not notice molecules that overlap.
 
-    Parameters
-    ----------
-    liquid
-        The liquid in the box; it is not used.
-    well, species, strength, bath
-        The attraction of molecules that attract each other; not used either.
-
     Examples
     --------
     >>> box = DescribedParcel([[1, 2, 2]], [[1, 0, 0]], length=(4, 4, 4))
@@ -34,17 +27,9 @@ class DescribedParcel(Parcel):
     engine: ClassVar[str] = "none"
 
     def __init__(
-        self,
-        position: ArrayLike,
-        velocity: ArrayLike,
-        *,
-        liquid: Liquid | None = None,
-        well: SquareWell | None = None,
-        species: ArrayLike = 0,
-        strength: float = 1.0,
-        bath: RandomBath | None = None,
-        **box: Unpack[Arrangement],
-    ) -> None:
+        self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid | None = None, well: SquareWell | None = None,
+        species: ArrayLike = 0, strength: float = 1.0, bath: RandomBath | None = None, **box: Unpack[Arrangement],
+    ) -> None:  # fmt: skip
         super().__init__(position, velocity, **box)
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:

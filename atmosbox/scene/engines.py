@@ -9,9 +9,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from atmosbox.errors import Option, SettingError, either, on_command_line
 from atmosbox.scene.settings import Parameter, Value, by_name
@@ -22,10 +21,12 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
-    from atmosbox.engine import Liquid, Parcel, Start
+    from atmosbox.engine import Parcel, Start
     from atmosbox.engine.core.random import Source
 
-__all__ = ["ENGINES", "EXACT", "FEW", "Engine", "EngineChoice", "choose", "names", "suited", "used"]
+__all__ = ["ENGINES", "EXACT", "FEW", "Engine", "EngineChoice", "choose", "names", "suited", "suited_engine", "used"]
+
+_Kind: TypeAlias = "Callable[[], Callable[..., Parcel]]"
 
 
 @dataclass(frozen=True)
@@ -46,22 +47,22 @@ class Engine:
         Whether the pressure is n kT, without Z: its molecules have no excluded volume.
     reference
         Publication of its method.
-    moist
-        Function that returns the class of its parcels with a liquid in them, if there is one.
-    attracting
-        Function that returns the class of its parcels of molecules that attract each other, if there is one.
+    moist, drops, attracting
+        The same of parcels with a liquid in them, with drops that have a size of their own, and of molecules that
+        attract each other; None if there are none.
     presets
         Names that stand for several options at once.
     """
 
     name: str
     summary: str
-    parcel: Callable[[], type[Parcel]]
+    parcel: _Kind
     parameters: tuple[Parameter, ...] = ()
     ideal: bool = False
     reference: str = ""
-    moist: Callable[[Liquid], type[Parcel]] | None = None
-    attracting: Callable[[], type[Parcel]] | None = None
+    moist: _Kind | None = None
+    drops: _Kind | None = None
+    attracting: _Kind | None = None
     presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
 
 
@@ -71,18 +72,22 @@ def _exact() -> type[Parcel]:
     return ParcelSet
 
 
-def _attracting_exact() -> type[Parcel]:
+def _exact_moist() -> type[Parcel]:
+    from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+
+    return MoistParcelSet
+
+
+def _exact_drops() -> type[Parcel]:
+    from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+
+    return DropParcelSet
+
+
+def _exact_attracting() -> type[Parcel]:
     from atmosbox.engine import AttractingParcelSet
 
     return AttractingParcelSet
-
-
-def _moist_exact(liquid: Liquid) -> type[Parcel]:
-    from atmosbox.engine import Drops
-    from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
-    from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-
-    return DropParcelSet if isinstance(liquid, Drops) else MoistParcelSet
 
 
 def _stepped() -> type[Parcel]:
@@ -97,89 +102,70 @@ def _dsmc() -> type[Parcel]:
     return DsmcParcel
 
 
-def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
-    from atmosbox.engine import Drops
+def _dsmc_moist() -> type[Parcel]:
     from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
 
-    if isinstance(liquid, Drops):
-        problem = "has no drops with a size of their own"
-        raise SettingError("engine", "dsmc", problem, Option("engine", "exact"), ", or a mist")
     return MoistDsmcParcel
 
 
-def _number(name: str, default: float, low: float, high: float, help: str) -> Parameter:
-    return Parameter(name, "1", default, low, high, None, help, "float")
+def _option(name: str, default: Value, help: str, low: float | None = None, high: float | None = None) -> Parameter:
+    kind = type(default).__name__
+    return Parameter(name, "" if kind == "bool" else "1", default, low, high, None, help, kind)
 
 
 def _word(name: str, choices: tuple[str, ...], help: str) -> Parameter:
     return Parameter(name, "", choices[0], None, None, choices, help, "str")
 
 
-def _count(name: str, default: int, high: int, help: str) -> Parameter:
-    return Parameter(name, "1", default, 1, high, None, help, "int")
-
-
-_COLLISIONS = Parameter(
-    "collisions", "", True, None, None, None, "whether molecules collide with each other, or with walls alone", "bool"
-)
+_COLLISIONS = _option("collisions", True, "whether molecules collide with each other, or with walls alone")
 _DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
-
-ENGINES: Mapping[str, Engine] = MappingProxyType(
-    {
-        engine.name: engine
-        for engine in (
-            Engine(
-                "exact",
-                "every contact and every wall hit at its exact time, in order",
-                _exact,
-                (_COLLISIONS,),
-                reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
-                moist=_moist_exact,
-                attracting=_attracting_exact,
-            ),
-            Engine(
-                "stepped",
-                "equal steps, as in applets: all molecules move, then those that overlap and approach collide",
-                _stepped,
-                (
-                    _number("delta", 0.05, 1e-6, 1e3, _DELTA),
-                    _word(
-                        "rule",
-                        ("pairwise", "index-order", "look-ahead", "every-overlap"),
-                        "which pairs collide, and how they are found",
-                    ),
-                    _word("motion", ("parabola", "euler"), "how molecules fall"),
-                    _word(
-                        "smooth_walls",
-                        ("mirror", "fold", "flip", "clamp", "undo"),
-                        "what smooth walls do with a molecule that has gone through them",
-                    ),
-                    _COLLISIONS,
-                ),
-                presets={
-                    "applet": {"rule": "index-order", "motion": "euler", "smooth_walls": "fold"},
-                    "applet-discs": {"rule": "look-ahead", "motion": "euler", "smooth_walls": "clamp"},
-                    "applet-atmosphere": {"rule": "pairwise", "motion": "parabola", "smooth_walls": "undo"},
-                },
-            ),
-            Engine(
-                "dsmc",
-                "equal steps: in each cell partners of collisions are drawn at random; for many in a thin gas",
-                _dsmc,
-                (
-                    _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
-                    _number("occupancy", 10.0, 1.0, 1e4, "mean number of molecules in a cell"),
-                    _number("cell", 0.5, 1e-3, 1e3, "side of a cell in mean free paths, in place of an occupancy"),
-                    _COLLISIONS,
-                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
-                ),
-                ideal=True,
-                reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
-                moist=_moist_dsmc,
-            ),
-        )
-    }
+_RULES = "pairwise", "index-order", "look-ahead", "every-overlap"
+_SMOOTH = "mirror", "fold", "flip", "clamp", "undo"
+_ALL = (
+    Engine(
+        "exact",
+        "every contact and every wall hit at its exact time, in order",
+        _exact,
+        (_COLLISIONS,),
+        reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+        moist=_exact_moist,
+        drops=_exact_drops,
+        attracting=_exact_attracting,
+    ),
+    Engine(
+        "stepped",
+        "equal steps, as in applets: all molecules move, then those that overlap and approach collide",
+        _stepped,
+        (
+            _option("delta", 0.05, _DELTA, 1e-6, 1e3),
+            _word("rule", _RULES, "which pairs collide, and how they are found"),
+            _word("motion", ("parabola", "euler"), "how molecules fall"),
+            _word("smooth_walls", _SMOOTH, "what smooth walls do with a molecule that has gone through them"),
+            _COLLISIONS,
+        ),
+        presets={
+            "applet": {"rule": "index-order", "motion": "euler", "smooth_walls": "fold"},
+            "applet-discs": {"rule": "look-ahead", "motion": "euler", "smooth_walls": "clamp"},
+            "applet-atmosphere": {"rule": "pairwise", "motion": "parabola", "smooth_walls": "undo"},
+        },
+    ),
+    Engine(
+        "dsmc",
+        "equal steps: in each cell partners of collisions are drawn at random; for many in a thin gas",
+        _dsmc,
+        (
+            _option("dt", 0.2, "time step in mean free times", 1e-4, 10.0),
+            _option("occupancy", 10.0, "mean number of molecules in a cell", 1.0, 1e4),
+            _option("cell", 0.5, "side of a cell in mean free paths, in place of an occupancy", 1e-3, 1e3),
+            _COLLISIONS,
+            _option("threads", 1, "on how many threads; the result is the same for any number", 1, 256),
+        ),
+        ideal=True,
+        reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
+        moist=_dsmc_moist,
+    ),
 )
+ENGINES: Mapping[str, Engine] = MappingProxyType({engine.name: engine for engine in _ALL})
 """The engines by name; the first is exact up to rounding."""
 
 
@@ -247,34 +233,33 @@ class EngineChoice:
         SettingError
             If the box has a ``liquid`` or a ``well`` about its molecules, and the engine has no class for it.
         """
-        kind: Callable[[], Callable[..., Parcel]] = self.engine.parcel
+        from atmosbox.engine import Drops
+
+        kind: Any = self.engine.parcel
         if "liquid" in box:
             if self.engine.moist is None:
                 able = either("engine", [engine.name for engine in ENGINES.values() if engine.moist is not None])
                 raise SettingError("engine", str(self), "cannot simulate liquid water", *able)
-            kind = partial(self.engine.moist, box["liquid"])
+            kind = self.engine.drops if isinstance(box["liquid"], Drops) else self.engine.moist
+            if kind is None:
+                problem = "has no drops with a size of their own"
+                raise SettingError("engine", self.name, problem, Option("engine", "exact"), ", or a mist")
         if "well" in box:
-            if self.engine.attracting is None:
-                raise SettingError("engine", str(self), "cannot simulate attraction", Option("engine", "exact"))
             kind = self.engine.attracting
+            if kind is None:
+                raise SettingError("engine", str(self), "cannot simulate attraction", Option("engine", "exact"))
         if self.described:
             from atmosbox.scene.described_parcel import DescribedParcel
 
             return DescribedParcel(position, velocity, **box)
-        return kind()(position, velocity, **self.options, **box)
+        parcel: Parcel = kind()(position, velocity, **self.options, **box)
+        return parcel
 
     def begin(self, start: Start, *, rng: Source | None = None, **box: Any) -> Parcel:
         """Return a parcel of this engine whose molecules start as declared.
 
-        Parameters
-        ----------
-        start
-            How the molecules start.
-        rng
-            Random numbers of which some have been drawn, if more than the start depends on the seed; otherwise those of
-            the seed of the box.
-        **box
-            The other arguments of `make`.
+        If more than the start depends on the seed, ``rng`` are random numbers of which some have been drawn; otherwise
+        they are those of the seed of the box.
 
         Examples
         --------
@@ -366,6 +351,11 @@ def suited(molecules: int) -> str:
     ('exact', 'dsmc')
     """
     return "exact" if molecules <= FEW else "dsmc"
+
+
+def suited_engine(settings: Any) -> str:
+    """Return `suited` for settings with a number of molecules: the ``usual_engine`` of scenes of thin gas."""
+    return suited(settings.molecules)
 
 
 def used(dataset: xr.Dataset) -> EngineChoice:

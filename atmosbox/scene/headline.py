@@ -99,17 +99,9 @@ class Headline:
 
     @classmethod
     def of_mean(
-        cls,
-        name: str,
-        label: str,
-        mean: BlockAverage,
-        theory: float | None,
-        unit: str,
-        display_unit: str = "",
-        *,
-        tolerance: float = 0.0,
-        reason: str = CHANCE_ALONE,
-    ) -> Self:
+        cls, name: str, label: str, mean: BlockAverage, theory: float | None, unit: str, display_unit: str = "", *,
+        tolerance: float = 0.0, reason: str = CHANCE_ALONE,
+    ) -> Self:  # fmt: skip
         """Return the headline of a mean with its standard error; the display unit is ``unit`` if none is given."""
         value, error = float(mean.mean), float(mean.standard_error)
         return cls(name, value, error, theory, tolerance, reason, unit, display_unit or unit, label)

@@ -89,27 +89,19 @@ class Knob:
 
 
 def wall_temperature(
-    parcel: Parcel,
-    scale: Scale,
-    settings: SceneSettings,
-    *,
-    low: float,
-    high: float,
-    name: str = "temperature",
-    wall: int | None = None,
-) -> Knob:
+    parcel: Parcel, scale: Scale, settings: SceneSettings, *, name: str = "temperature", wall: int | None = None,
+    low: float, high: float,
+) -> Knob:  # fmt: skip
     """Return the knob that sets the temperature of the heat baths of a box.
 
     Parameters
     ----------
-    parcel, scale, settings
-        The box, its scale and its settings.
-    low, high
-        The range, in the unit of the setting; widened to include the value at the start.
     name
         The setting whose value is the value at the start.
     wall
         The number of the wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if None.
+    low, high
+        The range, in the unit of the setting; widened to include the value at the start.
 
     Examples
     --------
@@ -118,22 +110,16 @@ def wall_temperature(
     >>> [(knob.name, knob.value, knob.unit) for knob in setup.knobs]
     [('temperature', 20.0, 'degC')]
     """
-
-    def turn(kelvin: float) -> None:
-        parcel.set_wall_kT(scale.reduced_temperature(kelvin), wall)
-
-    return replace(_of_setting(settings, name, low, high, turn), wall=wall)
+    knob = _of_setting(
+        settings, name, low, high, lambda kelvin: parcel.set_wall_kT(scale.reduced_temperature(kelvin), wall)
+    )
+    return replace(knob, wall=wall)
 
 
 def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float) -> tuple[Knob, ...]:
     """Return the knob that sets gravity; nothing for a box without gravity, whose kernels have none.
 
-    Parameters
-    ----------
-    parcel, scale, settings
-        The box, its scale and its settings.
-    low, high
-        The range, in the unit of the setting; above 0, and widened to include the value at the start.
+    ``low`` and ``high`` are the range in the unit of the setting, above 0; it is widened to include the first value.
 
     Examples
     --------
@@ -146,36 +132,24 @@ def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float
     >>> setup.parcel.gravity_work > 0.0, setup.parcel.ledger() < 1e-12
     (True, True)
     """
-
-    def turn(acceleration: float) -> None:
-        parcel.set_gravity(rounded(acceleration / scale.acceleration))
-
-    return (_of_setting(settings, "gravity", low, high, turn),) if parcel.gravity > 0.0 else ()
+    if not parcel.gravity > 0.0:
+        return ()
+    unit = scale.acceleration
+    return (_of_setting(settings, "gravity", low, high, lambda value: parcel.set_gravity(rounded(value / unit))),)
 
 
 def warmed_walls(
-    parcel: Parcel,
-    settings: SceneSettings,
-    name: str,
-    help: str,
-    walls: Sequence[int],
-    kT: Callable[[float], float],
-    *,
-    low: float,
-    high: float,
-) -> Knob:
+    parcel: Parcel, settings: SceneSettings, name: str, help: str, walls: Sequence[int], kT: Callable[[float], float],
+    *, low: float, high: float,
+) -> Knob:  # fmt: skip
     """Return the knob that turns smooth walls into heat baths at its first turn, and sets their temperature.
 
     Until then the walls are those of the scene, so that a run in which no knob is turned is that of ``atmosbox run``.
 
     Parameters
     ----------
-    parcel, settings
-        The box and its settings.
-    name
-        The setting whose value is the value at the start.
-    help
-        What it is, in one line.
+    name, help
+        The setting whose value is the value at the start, and what the knob is, in one line.
     walls
         Numbers of the walls, in the order of `atmosbox.engine.core.walls.WALL_NAMES`.
     kT
@@ -198,25 +172,16 @@ def warmed_walls(
     """
     from atmosbox.engine import HeatBath, Specular
 
-    def turn(value: float) -> None:
-        bath = HeatBath(rounded(kT(value)))
+    def become(kind: HeatBath | Specular) -> None:
         for wall in walls:
-            parcel.set_wall(wall, bath)
+            parcel.set_wall(wall, kind)
 
-    def leave() -> None:
-        for wall in walls:
-            parcel.set_wall(wall, Specular())
-
-    return replace(_of_setting(settings, name, low, high, turn), help=help, leave=leave)
+    knob = _of_setting(settings, name, low, high, lambda value: become(HeatBath(rounded(kT(value)))))
+    return replace(knob, help=help, leave=lambda: become(Specular()))
 
 
 def open_pool(parcel: Any) -> Knob:
     """Return the knob that covers a part of a pool, or all of it, with a foil; see `set_open_pool` of the box.
-
-    Parameters
-    ----------
-    parcel
-        A box with a pool.
 
     Examples
     --------
@@ -227,22 +192,14 @@ def open_pool(parcel: Any) -> Knob:
     >>> setup.parcel.evaporated, setup.parcel.condensed, setup.parcel.ledger() < 1e-12
     (0, 0, True)
     """
-
-    def turn(share: float) -> None:
-        parcel.set_open_pool(share)
-
-    return Knob("open_pool", "share of the pool that is open; the rest is covered", "percent", 0.0, 100.0, 100.0, turn)
+    help = "share of the pool that is open; the rest is covered"
+    return Knob("open_pool", help, "percent", 0.0, 100.0, 100.0, lambda share: parcel.set_open_pool(share))
 
 
 def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:
     """Return the knob that moves a parcel up and down, at the speed of its planned ascent.
 
-    Parameters
-    ----------
-    parcel, driver
-        The box, and the driver of its piston.
-    height
-        Height [m] after a share of the ascent, 0 to 1; increasing.
+    ``height`` gives the height [m] after a share of the ascent, 0 to 1; it increases.
 
     Examples
     --------
@@ -274,11 +231,8 @@ def way(parcel: Parcel, driver: FollowPressure) -> Knob:
     >>> [knob.name for knob in build(prepare("mountains", {"molecules": 200})).knobs]
     ['way']
     """
-
-    def turn(share: float) -> None:
-        _lead(parcel, driver, share)
-
-    return Knob("way", "place on its path to which the parcel moves", "percent", 0.0, 100.0, 100.0, turn)
+    help = "place on its path to which the parcel moves"
+    return Knob("way", help, "percent", 0.0, 100.0, 100.0, lambda share: _lead(parcel, driver, share))
 
 
 def _lead(parcel: Parcel, driver: FollowPressure, share: float) -> None:

@@ -26,11 +26,6 @@ def water(scale: Scale) -> Substance:
     Its binding energy and its heat capacity are those of `atmosbox.theory.saturation_vapor_pressure`; so its saturation
     vapour pressure follows that formula at every temperature.
 
-    Parameters
-    ----------
-    scale
-        The units of the scene.
-
     Examples
     --------
     >>> from atmosbox.theory.constants import BOLTZMANN
@@ -53,13 +48,6 @@ def water(scale: Scale) -> Substance:
 def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) -> int:
     """Return how many of ``molecules`` are vapour at a partial pressure.
 
-    Parameters
-    ----------
-    molecules
-        Number of molecules of air and vapour together.
-    vapour_pressure, pressure
-        Partial pressure of the vapour, and pressure of the gas, both in one unit.
-
     Examples
     --------
     >>> vapour_molecules(1000, 23.0, 1000.0)
@@ -73,11 +61,6 @@ def nuclei_heat_capacity(air: int) -> float:
 
     It keeps the temperature steady when the first molecules condense. It is at most half a percent of the heat capacity
     of the air at constant pressure, 7/2 k per molecule, and so changes an adiabat little.
-
-    Parameters
-    ----------
-    air
-        Number of molecules of air.
 
     Examples
     --------
@@ -96,11 +79,6 @@ class MoistAir(NamedTuple):
 
 def moist_air(molecules: int, vapour: int) -> MoistAir:
     """Return molecules of moist air.
-
-    Parameters
-    ----------
-    molecules, vapour
-        Number of molecules, and number of them that are vapour.
 
     Examples
     --------

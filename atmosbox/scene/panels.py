@@ -12,21 +12,6 @@ from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any
 
-__all__ = [
-    "ATMOSPHERE_VARIABLES",
-    "DISC_VARIABLES",
-    "KINDS",
-    "ROLES",
-    "SCALES",
-    "SKEWT_AXES",
-    "Line",
-    "Panel",
-    "from_json",
-    "over_time",
-    "to_json",
-    "without_headlines",
-]
-
 
 def check_text(what: str, name: str, value: object) -> None:
     """Refuse a value that is not a text, and an empty text."""
@@ -100,14 +85,9 @@ class Line:
 
 KINDS = ("line", "profile", "histogram", "discs", "skewt", "atmosphere")
 SCALES = ("linear", "log")
-SKEWT_AXES = {
-    "x_unit": "degC",
-    "y_unit": "hPa",
-    "x_scale": "linear",
-    "y_scale": "log",
-    "x_invert": False,
-    "y_invert": True,
-}
+_SKEWT_AXES: dict[str, Any] = {
+    "x_unit": "degC", "y_unit": "hPa", "x_scale": "linear", "y_scale": "log", "x_invert": False, "y_invert": True
+}  # fmt: skip
 ATMOSPHERE_VARIABLES = (
     "parcel_temperature",
     "environment_pressure",
@@ -119,6 +99,7 @@ ATMOSPHERE_VARIABLES = (
     "vapor_molecule_count",
 )
 """Variables of the parcel that the picture of an atmosphere shows in addition to its height, if the run has them."""
+_TEXTS = ("x_label", "y_label", "x_unit", "y_unit", "note")
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
 
 
@@ -207,35 +188,35 @@ class Panel:
         check_text("panel", "title", self.title)
         if self.kind == "skewt":
             self._set_skewt_axes()
-        for name in ("x_label", "y_label", "x_unit", "y_unit", "note"):
-            if not isinstance(getattr(self, name), str):
-                raise ValueError(f"the {name} of the panel {self.title!r} is not a text.")
         for name in ("x_scale", "y_scale"):
             check_choice("panel", name, getattr(self, name), SCALES)
+        panel, values = f"of the panel {self.title!r}", vars(self)
+        wrong = [f"the {n} {panel} is not a text" for n in _TEXTS if not isinstance(values[n], str)]
         for name in ("x_invert", "y_invert"):
-            if not isinstance(getattr(self, name), bool):
-                raise ValueError(f"{name} of the panel {self.title!r} is neither true nor false.")
+            if not isinstance(values[name], bool):
+                wrong.append(f"{name} {panel} is neither true nor false")
         if type(self.averages) is not int or self.averages < 0 or (self.averages and self.kind != "line"):
-            raise ValueError(f"averages of the panel {self.title!r} is {self.averages!r}: only a line panel has parts.")
+            wrong.append(f"averages {panel} is {self.averages!r}: only a line panel has parts")
         for name, kind in (("lines", Line), ("headlines", str), ("marks", str)):
-            values = getattr(self, name)
-            if not isinstance(values, tuple) or not all(isinstance(value, kind) for value in values):
-                raise ValueError(f"{name} of the panel {self.title!r} is not a tuple of {kind.__name__}.")
+            if not isinstance(values[name], tuple) or not all(isinstance(value, kind) for value in values[name]):
+                wrong.append(f"{name} {panel} is not a tuple of {kind.__name__}")
         for name in ("start", "x_limits", "y_limits"):
-            if len(getattr(self, name)) not in (0, 2):
-                raise ValueError(f"{name} of the panel {self.title!r} is {getattr(self, name)!r}, and has two numbers.")
+            if len(values[name]) not in (0, 2):
+                wrong.append(f"{name} {panel} is {values[name]!r}, and has two numbers")
         if any(len(guide) != 3 or guide[0] not in ("x", "y") for guide in self.guides):
-            raise ValueError(f"a guide of the panel {self.title!r} is not an axis, a value and a text.")
+            wrong.append(f"a guide {panel} is not an axis, a value and a text")
         if (self.kind == "discs") == bool(self.lines):
             wanted = "has no lines" if self.kind == "discs" else "needs at least one line"
-            raise ValueError(f"the panel {self.title!r} is of the kind {self.kind!r}, which {wanted}.")
+            wrong.append(f"the panel {self.title!r} is of the kind {self.kind!r}, which {wanted}")
         if self.marks and self.kind != "skewt":
-            raise ValueError(f"the panel {self.title!r} has marks, and only a panel of the kind 'skewt' shows them.")
+            wrong.append(f"the panel {self.title!r} has marks, and only a panel of the kind 'skewt' shows them")
+        if wrong:
+            raise ValueError(f"{wrong[0]}.")
 
     def _set_skewt_axes(self) -> None:
         """Give the panel the axes of a skew-T, the only ones allowed."""
         defaults = {field.name: field.default for field in fields(self)}
-        for name, value in SKEWT_AXES.items():
+        for name, value in _SKEWT_AXES.items():
             if getattr(self, name) not in (value, defaults[name]):
                 raise ValueError(
                     f"the {name} of the panel {self.title!r} is {getattr(self, name)!r}: "
@@ -274,19 +255,9 @@ def without_headlines(panel: Panel) -> Panel | None:
 
 
 def over_time(
-    title: str,
-    curves: dict[str, str],
-    label: str,
-    unit: str = "",
-    *,
-    theory: str = "",
-    more: tuple[Line, ...] = (),
-    log: bool = False,
-    parts: int = 0,
-    headline: str = "",
-    start: float | None = None,
-    **others: Any,
-) -> Panel:
+    title: str, curves: dict[str, str], label: str, unit: str = "", *, theory: str = "", more: tuple[Line, ...] = (),
+    log: bool = False, parts: int = 0, headline: str = "", start: float | None = None, **others: Any,
+) -> Panel:  # fmt: skip
     """Return a panel of curves over time.
 
     Parameters
@@ -322,18 +293,42 @@ def over_time(
     if theory:
         lines.append(Line(time, f"{next(iter(curves))}_theory", theory, "theory"))
     return Panel(
-        "line",
-        title,
-        (*lines, *more),
-        x_label="time",
-        y_label=label,
-        y_unit=unit,
-        x_scale="log" if log else "linear",
-        averages=parts,
-        headlines=(headline,) if headline else (),
-        start=() if start is None else (0.0, start),
-        **others,
-    )
+        "line", title, (*lines, *more), x_label="time", y_label=label, y_unit=unit, averages=parts,
+        x_scale="log" if log else "linear", headlines=(headline,) if headline else (),
+        start=() if start is None else (0.0, start), **others,
+    )  # fmt: skip
+
+
+def over_height(
+    title: str, lines: tuple[Line, ...], label: str, unit: str, *headlines: str, pressure: bool = False, **others: Any
+) -> Panel:
+    """Return a panel of curves along a height in km, or along a pressure in hPa.
+
+    Parameters
+    ----------
+    title
+        Title of the panel, a sentence.
+    lines
+        The curves.
+    label, unit
+        Label and unit of the horizontal axis.
+    *headlines
+        Names of the numbers that are written into the panel.
+    pressure
+        Whether pressure goes up the page, in place of height.
+    **others
+        Further fields of the panel.
+
+    Examples
+    --------
+    >>> air = Line("air_temperature", "parcel_pressure", "air")
+    >>> over_height("It cools", (air,), "temperature", "K", pressure=True).y_unit
+    'hPa'
+    """
+    axis: dict[str, Any] = {"y_label": "height", "y_unit": "km"}
+    if pressure:
+        axis = {"y_label": "pressure", "y_unit": "hPa", "y_scale": "log", "y_invert": True}
+    return Panel("profile", title, lines, x_label=label, x_unit=unit, headlines=headlines, **axis | others)
 
 
 _FORMAT = 1
@@ -341,16 +336,6 @@ _FORMAT = 1
 
 def to_json(panels: Iterable[Panel]) -> str:
     """Return the panels of a figure as the text that is stored in a file.
-
-    Parameters
-    ----------
-    panels : iterable of Panel
-        The panels, in reading order.
-
-    Returns
-    -------
-    str
-        JSON, in ASCII. Fields with their default values are left out.
 
     Examples
     --------
@@ -362,21 +347,6 @@ def to_json(panels: Iterable[Panel]) -> str:
 
 def from_json(text: str) -> tuple[Panel, ...]:
     """Return the panels from the text that is stored in a file.
-
-    Parameters
-    ----------
-    text : str
-        What `to_json` has written.
-
-    Returns
-    -------
-    tuple of Panel
-        The panels, in reading order.
-
-    Raises
-    ------
-    ValueError
-        If the text is no JSON, or was written by another program or by a version with another format.
 
     Examples
     --------
@@ -403,13 +373,10 @@ def from_json(text: str) -> tuple[Panel, ...]:
 def _panel(record: object) -> Panel:
     values = _values("panel", record, Panel)
     for name in ("lines", "headlines", "marks", "start", "guides", "x_limits", "y_limits"):
-        if not isinstance(values.setdefault(name, []), list):
+        if not isinstance(given := values.get(name, []), list):
             raise ValueError(f"{name} of a panel are no list.")
-    values["lines"] = tuple(Line(**_values("line", item, Line)) for item in values["lines"])
-    for name in ("headlines", "marks", "start", "x_limits", "y_limits"):
-        values[name] = tuple(values[name])
-    values["guides"] = tuple(map(tuple, values["guides"]))
-    return Panel(**values)
+        values[name] = tuple(tuple(each) if name == "guides" else each for each in given)
+    return Panel(**values | {"lines": tuple(Line(**_values("line", item, Line)) for item in values["lines"])})
 
 
 def _values(what: str, record: object, kind: type[Line] | type[Panel]) -> dict[str, Any]:
@@ -427,12 +394,6 @@ def _values(what: str, record: object, kind: type[Line] | type[Panel]) -> dict[s
 
 def _as_record(item: Line | Panel) -> dict[str, object]:
     """Return the fields of a line or panel that differ from their defaults."""
-    record: dict[str, object] = {}
-    for field in fields(item):
-        value = getattr(item, field.name)
-        if value == field.default:
-            continue
-        if field.name == "lines":
-            value = [_as_record(line) for line in value]
-        record[field.name] = value
-    return record
+    record = {field.name: getattr(item, field.name) for field in fields(item)}
+    record = {field.name: record[field.name] for field in fields(item) if record[field.name] != field.default}
+    return record | ({"lines": [_as_record(line) for line in record["lines"]]} if "lines" in record else {})

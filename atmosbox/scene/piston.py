@@ -29,28 +29,6 @@ def size_of_parcel(
 ) -> tuple[float, NDArray[np.float64], float]:
     """Return density, sides within reach of the centres, and (Z - 1) / n, in diameters, at a pressure [Pa] and kT = 1.
 
-    Parameters
-    ----------
-    scale
-        The units of the box.
-    molecules
-        Number of molecules.
-    pressure
-        Pressure of the gas [Pa].
-    ideal
-        Whether molecules have no volume, so that Z is 1.
-    flatness
-        Height of the box over its width [1].
-
-    Returns
-    -------
-    density
-        Number density n [1/diameter^3].
-    sides : (axis,)
-        Sides of the space that centres can reach [diameter].
-    excess
-        What collisions add to the pressure, (Z - 1) / n [diameter^3].
-
     Examples
     --------
     Points at 1000 hPa and 0 degC have Loschmidt's number, 2.65e25 in a cubic metre; spheres push each other apart:
@@ -85,15 +63,7 @@ def free_time_of(density: float, *, ideal: bool) -> float:
 
 
 def parcel_facts(scale: Scale, sides: NDArray[np.float64]) -> dict[str, str]:
-    """Return the lines of the model card about the box of a parcel and its molecules.
-
-    Parameters
-    ----------
-    scale
-        The units of the box.
-    sides : (axis,)
-        Sides of the space that centres can reach at the start [diameter].
-    """
+    """Return the lines of the model card about the box of a parcel and its molecules."""
     return {
         "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0) + " nm at the start, real size",
         "real molecules per simulated one": "1",
@@ -102,40 +72,11 @@ def parcel_facts(scale: Scale, sides: NDArray[np.float64]) -> dict[str, str]:
 
 
 def moist_parcel(
-    engine: EngineChoice,
-    molecules: int,
-    vapour: int,
-    sides: NDArray[np.float64],
-    *,
-    driver: FollowPressure,
-    liquid: Liquid,
-    seed: int,
-) -> Parcel:
-    """Return moist air at kT = 1 under a piston, with its liquid; the other walls are smooth.
-
-    Parameters
-    ----------
-    engine
-        The engine with its options.
-    molecules, vapour
-        Number of molecules, and number of them that are vapour.
-    sides : (axis,)
-        Sides of the space that centres can reach [diameter].
-    driver
-        The driver of the piston.
-    liquid
-        The liquid water that the vapour can meet.
-    seed
-        Seed of the random numbers.
-    """
-    gas = moist_air(molecules, vapour)
+    engine: EngineChoice, molecules: int, vapour: int, sides: NDArray[np.float64], *, driver: FollowPressure,
+    liquid: Liquid, seed: int,
+) -> Parcel:  # fmt: skip
+    """Return moist air at kT = 1 under a piston, with its liquid; ``sides`` are those within reach of the centres."""
     return engine.begin(
-        Start(molecules, (*WARM, Scattered())),
-        length=tuple(sides + 1.0),
-        walls=(Specular(),) * 5 + (Piston(),),
-        mass=gas.mass,
-        rotation=gas.rotation,
-        seed=seed,
-        driver=driver,
-        liquid=liquid,
-    )
+        Start(molecules, (*WARM, Scattered())), length=tuple(sides + 1.0), walls=(Specular(),) * 5 + (Piston(),),
+        seed=seed, driver=driver, liquid=liquid, **moist_air(molecules, vapour)._asdict(),
+    )  # fmt: skip

@@ -108,16 +108,7 @@ class Parameter:
     def parse(self, value: object) -> Value:
         """Return what a user gave for this setting, in its documented unit.
 
-        Parameters
-        ----------
-        value
-            A number, a switch or a text; a number may come with a unit, as in "25 degC", "298.15 K" or "77F", and a
-            bare one is in the documented unit.
-
-        Returns
-        -------
-        bool, int, float or str
-            The value; a number that came in another unit is rounded to 12 digits.
+        A number may come with a unit, as in "25 degC", "298.15 K" or "77F"; then it is rounded to 12 digits.
 
         Raises
         ------
@@ -262,14 +253,9 @@ def by_name(
 
 
 def setting(
-    default: Value,
-    unit: str,
-    help: str,
-    *,
-    low: float | None = None,
-    high: float | None = None,
+    default: Value, unit: str, help: str, *, low: float | None = None, high: float | None = None,
     choices: tuple[str, ...] | None = None,
-) -> Any:
+) -> Any:  # fmt: skip
     """Declare a setting of a scene.
 
     Parameters
@@ -357,19 +343,8 @@ class SceneSettings:
     def from_user(cls, values: Mapping[str, Any]) -> Self:
         """Return the settings that a user asked for, with the defaults for the rest.
 
-        Parameters
-        ----------
-        values
-            Numbers, switches and texts by name; a name may be spelled with "-" for "_".
-
-        Raises
-        ------
-        UnknownSettingError
-            If the scene has no setting of a name.
-        UnitError
-            If a number or its unit cannot be understood.
-        SettingError
-            If a value is not allowed, or the values do not fit together.
+        A name may be spelled with "-" for "_". An unknown name raises UnknownSettingError; a value raises what
+        `Parameter.parse` raises; values that do not fit together raise SettingError.
         """
         return cls(**values)
 
@@ -381,11 +356,6 @@ class SceneSettings:
     @classmethod
     def with_defaults(cls, **defaults: Value) -> type[Self]:
         """Return the same settings with other defaults, for a scene that is a variant of another.
-
-        Raises
-        ------
-        UnknownSettingError
-            If a default names no setting.
 
         Examples
         --------

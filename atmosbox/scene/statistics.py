@@ -1,4 +1,4 @@
-"""Means with their standard errors, and the critical values of the tests of a distribution."""
+"""Means with their standard errors."""
 
 from typing import NamedTuple
 
@@ -33,11 +33,6 @@ def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> B
         Number of blocks [1].
     memory
         Correlation time :math:`\tau` in values, where theory gives it; 0 for independent blocks [1].
-
-    Returns
-    -------
-    BlockAverage
-        ``mean`` and ``standard_error``, of the shape of one value.
 
     Raises
     ------
@@ -110,11 +105,6 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
         each, at most 100, if these are more than ``blocks``. With more blocks the error itself scatters less, and a
         correct run appears four standard errors off less often.
 
-    Returns
-    -------
-    BlockAverage
-        ``mean`` of all values and ``standard_error``, of the shape of one value.
-
     Raises
     ------
     ValueError
@@ -179,11 +169,6 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     blocks
         As in `overlapping_average`.
 
-    Returns
-    -------
-    BlockAverage
-        ``mean`` and ``standard_error``, of the shape of one value.
-
     Examples
     --------
     >>> rng = np.random.default_rng(2)
@@ -223,11 +208,6 @@ def growth_per_step(values: ArrayLike, noise: float, decay: float) -> BlockAvera
     decay
         Rate at which the mode decays in air at rest without buoyancy [1/interval].
 
-    Returns
-    -------
-    BlockAverage
-        Growth and error [1/interval]; not a number if there are fewer than four values beyond the noise.
-
     Examples
     --------
     >>> found = growth_per_step(1.1 ** np.arange(60.0), 1.0, 0.1)
@@ -242,65 +222,3 @@ def growth_per_step(values: ArrayLike, noise: float, decay: float) -> BlockAvera
     slope = float(np.polyfit(np.arange(len(grown)), grown, 1)[0])
     error = np.sqrt(max(decay, 0.0) * abs(slope)) / START / max(float(grown[-1] - grown[0]), 1e-9)
     return BlockAverage(np.array(slope), np.array(error))
-
-
-def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
-    r"""Return the largest distance between a measured distribution and the true one that is likely by chance.
-
-    The greatest distance between the two cumulative distributions exceeds this value with a probability of
-    ``level``: 1.358, 1.628 and 1.949 over :math:`\sqrt{n}` at 5 %, 1 % and 0.1 %.
-
-    Parameters
-    ----------
-    samples
-        Number n of independent values [1].
-    level
-        Probability of a false alarm [1].
-
-    Returns
-    -------
-    ndarray
-        Critical distance [1].
-
-    Notes
-    -----
-    This is the limit of large n; for small n it is a little too large, that is on the safe side.
-
-    References
-    ----------
-    .. [1] Massey, F. J. (1951), doi:10.1080/01621459.1951.10500769.
-
-    Examples
-    --------
-    >>> round(float(kolmogorov_smirnov_critical(10_000, 0.01)), 5)
-    0.01628
-    """
-    from scipy import special  # loads slowly
-
-    critical: NDArray[np.float64] = special.kolmogi(np.asarray(level, dtype=np.float64)) / np.sqrt(
-        np.asarray(samples, dtype=np.float64)
-    )
-    return critical
-
-
-def running_mean(values: ArrayLike, block: int) -> NDArray[np.float64]:
-    """Return the mean of each value and its neighbours, the same number on either side, up to half a block.
-
-    Parameters
-    ----------
-    values : (value,)
-        The series.
-    block
-        Number of values of which a mean is taken; one more if it is even.
-
-    Examples
-    --------
-    >>> running_mean([0.0, 3.0, 0.0, 3.0], 3)
-    array([0., 1., 2., 3.])
-    """
-    row = np.asarray(values, float)
-    sums = np.concatenate([[0.0], np.cumsum(row)])
-    place = np.arange(len(row))
-    half = np.minimum(np.minimum(place, len(row) - 1 - place), block // 2)
-    mean: NDArray[np.float64] = (sums[place + half + 1] - sums[place - half]) / (2 * half + 1)
-    return mean

@@ -43,16 +43,12 @@ class Target(NamedTuple):
         return " and ".join([*limits, f"{self.kelvin:g} K"] if math.isfinite(self.kelvin) else limits)
 
 
-TARGETS: Mapping[str, Target] = MappingProxyType(
-    {
-        target.text: target
-        for target in (
-            Target("sketch", 3.0, 0.05),  # in a figure the result lies near the theory
-            Target("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
-            Target("reference", 0.5, 0.01, best=True),  # the best of all measured runs, at any cost
-        )
-    }
+_NAMED = (
+    Target("sketch", 3.0, 0.05),  # in a figure the result lies near the theory
+    Target("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
+    Target("reference", 0.5, 0.01, best=True),  # the best of all measured runs, at any cost
 )
+TARGETS: Mapping[str, Target] = MappingProxyType({target.text: target for target in _NAMED})
 """The targets that have a name, the same for all scenes."""
 
 _NUMBER = re.compile(r"([0-9]+\.?[0-9]*(?:e[+-]?[0-9]{1,3})?|\.[0-9]+(?:e[+-]?[0-9]{1,3})?)\s*(\S*)", re.IGNORECASE)

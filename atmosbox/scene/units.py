@@ -110,18 +110,7 @@ class Scale:
         return self.weight * self.energy
 
     def reduced_temperature(self, temperature: float) -> float:
-        """Return k_B T in the unit of energy: the ``kT`` that the engine is given for a heat bath.
-
-        Parameters
-        ----------
-        temperature
-            Temperature [K].
-
-        Returns
-        -------
-        float
-            k_B T / energy, a pure number.
-        """
+        """Return k_B T in the unit of energy: the ``kT`` that the engine is given for a heat bath."""
         return BOLTZMANN * temperature / self.energy
 
 

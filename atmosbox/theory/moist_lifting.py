@@ -5,7 +5,6 @@ liquid at equilibrium. Liquid may be carried, which makes the lift reversible, o
 are SI; mixing ratios are kg per kg of dry air. There is no ice.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -224,7 +223,6 @@ def raining_path(
     rate: float,
     most_liquid: float = 0.0,
     nuclei_heat: float = 0.0,
-    scatter: float = 0.0,
 ) -> ParcelPath:
     r"""Follow a parcel up and down whose cloud rains in proportion to its liquid beyond a threshold.
 
@@ -246,9 +244,6 @@ def raining_path(
         r [1/time], and the threshold [kg kg^-1].
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
-    scatter
-        Standard deviation of the liquid of a small cloud about its equilibrium [kg kg^-1]. A surplus rains, and a
-        deficit does not bring it back: so more falls than from a cloud without fluctuations.
 
     Examples
     --------
@@ -270,7 +265,6 @@ def raining_path(
     keeps = checked_not_negative(as_floats(most_liquid), "most_liquid") / MASS_RATIO
     heat = AIR_HEAT + checked_not_negative(as_floats(nuclei_heat), "nuclei_heat")
     fast = checked_not_negative(as_floats(rate), "rate")
-    spread = float(checked_not_negative(as_floats(scatter), "scatter")) / MASS_RATIO
     steps = np.diff(moments, prepend=0.0)
     if np.any(steps < 0.0):
         raise ValueError("times must not decrease.")
@@ -279,21 +273,13 @@ def raining_path(
     for k in range(len(p)):
         level = p[k : k + 1]
         t, vapor = _state(s, level, water, heat)
-        lost = np.minimum(_surplus(float(water - vapor - keeps), spread) * -np.expm1(-fast * steps[k]), water - vapor)
+        lost = np.minimum(np.maximum(water - vapor - keeps, 0.0) * -np.expm1(-fast * steps[k]), water - vapor)
         water, s = water - lost, s - lost * LIQUID_HEAT * np.log(t / TRIPLE_TEMPERATURE)
         if lost > 0.0:
             t, vapor = _state(s, level, water, heat)
         rows[k] = float(t), float(vapor), float(water)
     columns = rows[:, 0], MASS_RATIO * rows[:, 1], MASS_RATIO * (rows[:, 2] - rows[:, 1])
     return ParcelPath(*columns, MASS_RATIO * (given - rows[:, 2]))
-
-
-def _surplus(mean: float, scatter: float) -> float:
-    r"""Return the mean of the positive part of a normal variable, :math:`m \Phi(m/s) + s \phi(m/s)`."""
-    if not scatter > 0.0:
-        return max(mean, 0.0)
-    a = mean / scatter
-    return 0.5 * mean * math.erfc(-a / math.sqrt(2.0)) + scatter * math.exp(-0.5 * a * a) / math.sqrt(2.0 * math.pi)
 
 
 def _state(s: FloatArray, level: FloatArray, water: FloatArray, heat: FloatArray) -> tuple[FloatArray, FloatArray]:

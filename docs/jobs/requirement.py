@@ -14,7 +14,7 @@ from jobs.registry import Findings, job, rounded
 from scipy import constants, integrate
 
 from atmosbox import theory
-from atmosbox.scene.ascent import finite_size
+from atmosbox.scene.ascent.drawn_parcels import drift, planned_cloud
 from atmosbox.scene.units import Scale
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
@@ -196,8 +196,11 @@ def moist() -> list[list[str]]:
     humid = 4.0 * math.pi * DIFFUSIVITY * CONCENTRATION * DROPLET
     supersaturation = (latent / 3.5 - 1.0) * climbing / scale_height / humid
     pseudo = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water, 0.0)
-    known = finite_size.drift(ascent, ideal=False)
-    clusters = float(known.clusters[np.argmin(np.abs(known.pressure - base))])
+    cloud = planned_cloud(ascent)
+    grouped = cloud.temperature * cloud.clusters()
+    clusters = float(grouped[np.argmin(np.abs(cloud.pressure - base))])
+    lag = cloud.temperature * np.einsum("ti,ti->t", cloud.seen(), cloud.behind)
+    fast = cloud.temperature * drift(cloud) - grouped + lag
     return [
         ["mixing with the environment", "the largest difference between this parcel and a cloud: in a simulated "
          "cumulus the air above 2 km comes on average from well above the cloud base (Yeo and Romps 2013, "
@@ -211,8 +214,8 @@ def moist() -> list[list[str]]:
          "colder; the temperature stays the same"],
         ["supersaturation in an updraft", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
          f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm in a cubic centimetre; here the delay of the "
-         f"vapour makes the parcel up to {rounded(float(known.lag.max()))} K too cold"],
-        ["an hour for the ascent", f"the parcel is up to {rounded(float(known.rate.max()))} K too warm"],
+         f"vapour makes the parcel up to {rounded(float(lag.max()))} K too cold"],
+        ["an hour for the ascent", f"the parcel is up to {rounded(float(fast.max()))} K too warm"],
         ["clusters of few molecules", f"some molecules condense too early: at the cloud base the parcel is "
          f"{rounded(clusters)} K too warm"],
     ]  # fmt: skip

@@ -24,3 +24,8 @@ def piston_pressure_ratio(piston_speed, kT, mass):
     """Return the pressure on a receding piston over that on one at rest: the mean of 2 n m (v - u)^2 over v > u."""
     s = piston_speed / np.sqrt(2.0 * kT / mass)
     return (1.0 + 2.0 * s**2) * special.erfc(s) - 2.0 / np.sqrt(np.pi) * s * np.exp(-(s**2))
+
+
+def kolmogorov_smirnov_critical(samples, level):
+    """Return the largest distance between a measured distribution of many values and the true one, by chance."""
+    return special.kolmogi(level) / np.sqrt(samples)

@@ -13,8 +13,9 @@ from atmosbox import theory
 from atmosbox.engine import HeatBath, Periodic, Piston, Specular, maxwell_velocities
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
-from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.scene.statistics import block_average
 from tests.oracle import kinetic_gas
+from tests.oracle.kinetic_gas import kolmogorov_smirnov_critical
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many molecules take hours without numba")
 

@@ -11,7 +11,8 @@ from scipy import stats
 
 from atmosbox import theory
 from atmosbox.engine import HeatBath, Periodic, Piston, Ramp, Specular
-from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.scene.statistics import block_average
+from tests.oracle.kinetic_gas import kolmogorov_smirnov_critical
 from tests.physics.conftest import EVERYTHING
 
 P = Periodic()

@@ -13,7 +13,8 @@ from scipy import stats
 from atmosbox import theory
 from atmosbox.engine import Periodic, equal_speeds
 from atmosbox.engine.core.measure import speed_counts
-from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.scene.statistics import block_average
+from tests.oracle.kinetic_gas import kolmogorov_smirnov_critical
 
 P = Periodic()
 LEVEL = 1e-4

@@ -14,9 +14,10 @@ from scipy import stats
 from atmosbox import theory
 from atmosbox.engine import Periodic, Specular
 from atmosbox.engine.core.measure import temperature
-from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.scene.statistics import block_average
 from atmosbox.simulation import runner
 from tests.oracle import kinetic_gas
+from tests.oracle.kinetic_gas import kolmogorov_smirnov_critical
 
 S, P = Specular(), Periodic()
 LEVEL = 1e-4

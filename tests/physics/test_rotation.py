@@ -11,7 +11,8 @@ import pytest
 from scipy import stats
 
 from atmosbox.engine import Periodic, Piston, Specular
-from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.scene.statistics import block_average
+from tests.oracle.kinetic_gas import kolmogorov_smirnov_critical
 from tests.physics.conftest import EVERYTHING
 
 

@@ -16,8 +16,7 @@ from atmosbox import scenarios, theory
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
-from atmosbox.scene.ascent import along_frames, temperature_covariance
-from atmosbox.scene.ascent.random_walk import entropy_gain, gathered, walk
+from atmosbox.scene.ascent.drawn_parcels import along_frames, draw, entropy_gain, gathered, walk
 from atmosbox.simulation import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -101,10 +100,9 @@ def allowed_at(settings, level):
     """Return the deviation of lifting-moist that chance may cause at a level [K]: four standard errors."""
     ascent = scenarios.load("lifting-moist")._ascent(settings)
     outside = np.exp(np.interp((np.arange(60) + 0.5) / 60, np.linspace(0.0, 1.0, 400), np.log(ascent.route)))
-    cloud = along_frames(ascent, outside, 60, 10, ideal=False)
     near = int(np.argmin(np.abs(outside - level)))
     near = slice(min(max(near - 3, 0), 53), min(max(near - 3, 0), 53) + 7)
-    chance = math.sqrt(temperature_covariance(cloud, 10)[near, near].mean())
+    chance = float(draw(ascent, outside, 60, 10, ideal=False).warmth[:, near].mean(axis=1).std())
     warmth = float(ascent.planned_at(level).temperature[0])
     return 4.0 * chance * warmth
 
@@ -192,46 +190,24 @@ def test_the_pushes_of_molecules_on_droplets_that_flow_with_the_air_are_those_of
     assert pushes == pytest.approx(np.mean(work**2) * cloud.hits[30], rel=0.015)
 
 
+def test_parcels_drawn_at_random_scatter_as_the_liquid_and_the_entropy_of_theory():
+    ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
+    cloud = along_frames(ascent, np.geomspace(1e5, 3e4, 60), 60, 10, ideal=False)
+    x, entropy, rain = walk(cloud)
+    assert not rain.any()
+    # a thousand know each variance by 4.5 %, and liquid of a moment is hardly correlated with that of the next frame
+    assert np.mean(x[:, :, 0].var(axis=0) / cloud.liquid_scatter**2) == pytest.approx(1.0, abs=0.02)
+    gained = np.diff(gathered(entropy_gain(cloud).variance, cloud.moment), prepend=0.0)
+    scatter = np.diff(entropy, axis=1, prepend=0.0).var(axis=0)
+    assert scatter.sum() == pytest.approx(gained.sum(), rel=0.015)
+
+
 def over_mountains(**settings):
     """Return the course over the mountains, and its parcel at 8 samples in each of 96 frames."""
     ascent = scenarios.load("mountains")._ascent(runner.prepare("mountains", settings).settings)
     shares = np.linspace(0.0, 1.0, len(ascent.route))
     outside = np.exp(np.interp((np.arange(96) + 0.5) / 96, shares, np.log(ascent.route)))
     return ascent, along_frames(ascent, outside, 96, 8, ideal=True)
-
-
-@pytest.mark.parametrize(("molecules", "keeps"), [(30_000, 1.0), pytest.param(4000, 3.0, marks=pytest.mark.nightly)])
-def test_rain_scatters_as_molecules_that_fall_one_by_one_out_of_a_cloud_that_scatters(molecules, keeps):
-    ascent, cloud = over_mountains(molecules=molecules, cloud_water=keeps)
-    found = walk(cloud)
-    # the process itself, 1500 times: liquid relaxes to its equilibrium, and each excess molecule may fall
-    inverse = np.linalg.inv(cloud.resists)
-    scatter = np.sqrt(inverse[:, 0, 0])
-    memory = (inverse @ np.linalg.inv(cloud.yields) @ inverse)[:, 0, 0] / scatter**2
-    walked = np.sqrt(np.diff(gathered(entropy_gain(cloud).variance, cloud.moment), prepend=0.0))
-    warms = theory.LIQUID_HEAT_CAPACITY * np.diff(np.log(cloud.temperature), prepend=np.log(cloud.temperature[0]))
-    expected = ascent.path(cloud.pressure, cloud.moment / ascent.length).rain / theory.WATER_MASS_RATIO * cloud.air
-    rng, fine = np.random.default_rng(3), 3
-    fallen, entropy, x = np.zeros((3, 1500))
-    steps, lost = np.diff(cloud.moment, prepend=0.0) / fine, np.empty((len(walked), len(x)))
-    for k, step in enumerate(steps):
-        entropy += walked[k] * rng.standard_normal(len(x)) + warms[k] * (fallen - fallen.mean())
-        kept = math.exp(-step / memory[k])
-        for _ in range(fine):
-            x = kept * x + math.sqrt(1.0 - kept * kept) * scatter[k] * rng.standard_normal(len(x))
-            surplus = cloud.liquid[k] + expected[k] - fallen - cloud.dries[k] * entropy + x - cloud.keeps
-            fallen += rng.poisson(cloud.rains * step * np.maximum(surplus, 0.0))
-        lost[k] = fallen
-    variance = np.einsum("tijt->tij", found.covariance.swapaxes(2, 3))[:, 1, 1]
-    # 1500 times tell a variance by 3.7 %, and a mean by a fortieth of the scatter; at its onset, when a molecule or two
-    # have fallen, rain is not linear, and theory has up to a fifth too much
-    wet = variance > 0.5 * variance[-1]
-    assert wet.sum() > 300
-    assert lost[wet].var(axis=1) == pytest.approx(variance[wet], rel=0.15)
-    assert (np.abs(lost.mean(axis=1) - expected - found.more) < 0.15 * np.sqrt(variance))[wet].all()
-    # a warmer parcel loses less: 1500 times tell it by a 39th of both scatters
-    end = found.covariance[-1, :, -1]
-    assert abs(np.cov(entropy, fallen)[0, 1] - end[0, 1]) < 3.0 / 39.0 * math.sqrt(end[0, 0] * end[1, 1])
 
 
 def test_water_that_has_rained_leaves_the_cloud_as_warm_and_the_clear_air_behind_it_warmer():

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent import finite_size
-from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
+from atmosbox.scene.ascent.drawn_parcels import draw
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
 
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _NEAR = 4
 """Number of frames on either side that smooth one frame."""
-_DRAWN = 1000
-_SEED = 20
 _THEORY = "theory is the mean of parcels with the known errors of the ascent, measured in the same way"
 _LEAST = 0.9
 """Share of the parcels drawn that must have a level for it to be reported."""
@@ -42,20 +39,9 @@ def convection_headlines(
     *,
     ideal: bool,
 ) -> tuple[Headline, ...]:
-    """Return CAPE, CIN and the levels between which the parcel rises by itself.
+    """Return CAPE, CIN and the levels between which the parcel rises by itself, from a whole ascent.
 
-    Parameters
-    ----------
-    dataset
-        A whole ascent.
-    ascent
-        The ascent that was planned.
-    frames, samples
-        Number of frames of the whole ascent, and number of samples in each.
-    around
-        Function that gives the virtual temperature [K] of the environment at pressures [Pa].
-    ideal
-        Whether molecules have no volume.
+    ``around`` gives the virtual temperature [K] of the environment at pressures [Pa].
     """
     outside, pressure = dataset.environment_pressure.values, dataset.parcel_pressure.values
     warmer = dataset.parcel_density_temperature.values - around(pressure)
@@ -73,16 +59,9 @@ def convection_headlines(
     dense = law.density_temperature(path.temperature, path.vapor, path.liquid)
     expected = law.cape_cin(route, around(route), dense, ascent.base)
 
-    cloud = along_frames(ascent, outside, frames, samples, ideal=ideal)
+    drawn = draw(ascent, outside, frames, samples, ideal=ideal).density_warmth
     at_frames = np.interp(-np.log(outside), -np.log(route), dense)
-    noise = temperature_covariance(cloud, samples, density=True) * np.outer(at_frames, at_frames)
-    known = finite_size.drift(ascent, ideal=ideal)
-    # a molecule in a cluster warms the parcel, and is missing among the light molecules of the gas
-    light = known.clusters * (1.0 - 3.5 / known.latent)
-    off = np.interp(-np.log(outside), -np.log(route), known.warmer - known.clusters + light)
-    root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
-    drawn = np.random.default_rng(_SEED).standard_normal((_DRAWN, len(noise))) @ root.T
-    seen = [energies(at_frames + off + each - around(outside), ascent.base) for each in drawn]
+    seen = [energies(at_frames * (1.0 + each) - around(outside), ascent.base) for each in drawn]
     rows = (
         ("cape", "J kg-1", "J kg-1", "CAPE, the cloud carries its water"),
         ("cin", "J kg-1", "J kg-1", "CIN of the parcel"),
@@ -93,7 +72,7 @@ def convection_headlines(
     for name, unit, shown, label in rows:
         value, answer = getattr(here, name), getattr(expected, name)
         others = [level for each in seen if (level := getattr(each, name)) is not None]
-        if value is None or answer is None or len(others) < _LEAST * _DRAWN:
+        if value is None or answer is None or len(others) < _LEAST * len(seen):
             continue
         mean, scatter = float(np.mean(others)), float(np.std(others, ddof=1))
         if unit == "J kg-1" and abs(mean - answer) > 0.5 * abs(answer) > 0.0:  # the clusters hide the energy

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent import finite_size
-from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance, vapour_covariance
-from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
+from atmosbox.scene.ascent.drawn_parcels import Parcels, comparable, draw, planned_cloud
+from atmosbox.scene.ascent.near_equilibrium import Cloud
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
-from atmosbox.scene.panels import Line, Panel
+from atmosbox.scene.panels import Line, Panel, over_height
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,102 +23,52 @@ BLOCK = 7
 """Number of frames over which a temperature is averaged before it is compared with the adiabat."""
 LEAST, CLUSTERED = 0.1, 3.0
 """Least liquid that counts as a cloud: as a share of all water, and in standard deviations of the liquid."""
-_DRAWN = 1000
-_SEED = 21
 THEORY = "theory is the adiabat of a large parcel, with the known errors of so fast an ascent of so few molecules"
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
-    """Return the panels of temperature against pressure, of vapour and liquid, and of the parcel on its ascent.
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    adiabat
-        Label of the adiabat.
-    """
+    """Return the panels of temperature against pressure, of vapour and liquid, and of the parcel on its ascent."""
     cloud = ascent.base > 1.02 * ascent.top_pressure
     low, base = ascent.pressure / 100.0, ascent.base / 100.0
     start = ascent.temperature - 273.15, low
+    cools = (
+        Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
+        Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
+        Line("dry_air_adiabat_temperature", "parcel_pressure", "without condensation", "reference"),
+        Line("environment_temperature", "environment_pressure", "environment", "environment"),
+    )
+    liquid, vapour = "cloud_liquid_water_mixing_ratio", "humidity_mixing_ratio"
+    water = (
+        Line(liquid, "parcel_pressure", "liquid"),
+        Line(f"{liquid}_theory", "parcel_pressure", "liquid, theory", "theory"),
+        Line(vapour, "parcel_pressure", "vapour"),
+        Line(f"{vapour}_theory", "parcel_pressure", "vapour, theory", "theory"),
+    )
+    shown = [f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]]
+    more: dict[str, Any] = {"start": start}
+    if cloud:
+        # so that the kink is seen, a fifth of the axis lies below it
+        more["y_limits"] = low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)
+        more["guides"] = (("y", base, "cloud base, theory"),)
+        shown.insert(0, "cloud_base")
+    title = "In its cloud it cools more slowly" if cloud else "Too dry for a cloud"
     return (
         replace(atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"), start=start),
-        Panel(
-            "profile",
-            "In its cloud it cools more slowly" if cloud else "Too dry for a cloud",
-            (
-                Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
-                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
-                Line("dry_air_adiabat_temperature", "parcel_pressure", "without condensation", "reference"),
-                Line("environment_temperature", "environment_pressure", "environment", "environment"),
-            ),
-            x_label="temperature",
-            x_unit="degC",
-            headlines=(
-                *(("cloud_base",) if cloud else ()),
-                *(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]),
-            ),
-            y_label="pressure",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-            start=start,
-            # so that the kink is seen, a fifth of the axis lies below it
-            y_limits=(low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)) if cloud else (),
-            guides=(("y", base, "cloud base, theory"),) if cloud else (),
-        ),
-        Panel(
-            "profile",
-            "Vapour becomes liquid",
-            (
-                Line("cloud_liquid_water_mixing_ratio", "parcel_pressure", "liquid"),
-                Line("cloud_liquid_water_mixing_ratio_theory", "parcel_pressure", "liquid, theory", "theory"),
-                Line("humidity_mixing_ratio", "parcel_pressure", "vapour"),
-                Line("humidity_mixing_ratio_theory", "parcel_pressure", "vapour, theory", "theory"),
-            ),
-            x_label="mixing ratio",
-            x_unit="g kg-1",
-            y_label="pressure",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-        ),
+        over_height(title, cools, "temperature", "degC", *shown, pressure=True, **more),
+        over_height("Vapour becomes liquid", water, "mixing ratio", "g kg-1", pressure=True),
     )
 
 
 def atmosphere_panel(title: str, headlines: tuple[str, ...] = (), way: str = "") -> Panel:
-    """Return the picture of the parcel on its ascent, with ground, cloud and rain.
-
-    Parameters
-    ----------
-    title
-        Title of the panel.
-    headlines
-        Names of the numbers that are shown with it.
-    way
-        Label of the horizontal axis; empty for a parcel that rises vertically.
-    """
+    """Return the picture of the parcel on its ascent; ``way`` is the label of the horizontal axis, if there is one."""
     line = Line("elapsed_time", "parcel_height", "parcel")
     return Panel("atmosphere", title, (line,), x_label=way, y_label="height", y_unit="km", headlines=headlines)
 
 
 def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict[str, Array]:
-    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed.
+    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed; (frame,).
 
-    Parameters
-    ----------
-    dataset
-        The measured ascent.
-    ascent
-        The ascent that was planned.
-    frames
-        Number of frames of the whole ascent.
-
-    Returns
-    -------
-    dict
-        Arrays (frame,) by the names of the variables: temperature [K], mixing ratios [kg kg-1], relative humidity [1].
-        Liquid above ``largest_haze_mixing_ratio`` is a cloud.
+    Liquid above ``largest_haze_mixing_ratio`` is a cloud.
     """
     pressure = dataset.parcel_pressure.values
     middle = (np.arange(len(pressure)) + 0.5) / frames
@@ -134,7 +83,7 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
         path = ascent.path(pressure, pressure)
     exponent = float(law.moist_air_poisson_exponent(ascent.total_water, ascent.nuclei_heat))
     vapour_pressure = law.vapor_pressure(pressure, path.vapor)
-    cloud = cloud_along(ascent, pressure, middle, path=path)
+    cloud = Cloud(ascent, pressure, middle, path=path)
     found = {
         "dry_air_adiabat_temperature": ascent.temperature * (pressure / ascent.pressure) ** exponent,
         "cloud_liquid_water_mixing_ratio_theory": path.liquid,
@@ -148,28 +97,13 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
 def lifted_headlines(
     dataset: xr.Dataset, ascent: MoistAscent, frames: int, samples: int, *, ideal: bool
 ) -> tuple[Headline, ...]:
-    """Return the cloud base, and the temperature at some pressure levels of an ascent.
-
-    Parameters
-    ----------
-    dataset
-        The measured ascent.
-    ascent
-        The ascent that was planned.
-    frames, samples
-        Number of frames of the whole ascent, and number of samples in each.
-    ideal
-        Whether molecules have no volume.
-    """
+    """Return the cloud base, and the temperature at some pressure levels of an ascent."""
     pressure, outside = dataset.parcel_pressure.values, dataset.environment_pressure.values
     if len(pressure) < BLOCK:
         return ()
-    cloud = along_frames(ascent, outside, frames, samples, ideal=ideal)
+    drawn = draw(ascent, outside, frames, samples, ideal=ideal)
     misfit = (dataset.parcel_temperature - dataset.adiabat_temperature).values
-    temperature = dataset.adiabat_temperature.values
-    chance = temperature_covariance(cloud, samples) * np.outer(temperature, temperature)
-    known = finite_size.drift(ascent, ideal=ideal)
-    found = _cloud_base(dataset, ascent, cloud, samples, known)
+    found = _cloud_base(dataset, ascent, drawn)
     for level in ascent.levels:
         if outside.min() > 1.02 * level:  # the parcel's own pressure fluctuates
             continue
@@ -177,64 +111,38 @@ def lifted_headlines(
         first = min(max(first, 0), len(pressure) - BLOCK)
         near = slice(first, first + BLOCK)
         adiabat = float(ascent.planned_at(level).temperature[0])
-        found.append(
-            Headline(
-                f"temperature_at_{level / 100.0:.0f}_hpa",
-                adiabat + float(misfit[near].mean()),
-                float(np.sqrt(chance[near, near].mean())),
-                adiabat + float(known.at(outside[near]).mean()) if finite_size.comparable(ascent) else None,
-                0.0,
-                THEORY,
-                "K",
-                "degC",
-                f"temperature at {level / 100.0:.0f} hPa",
-            )
-        )
+        warmer = drawn.warmth[:, near].mean(axis=1) * adiabat
+        name, label = f"temperature_at_{level / 100.0:.0f}_hpa", f"temperature at {level / 100.0:.0f} hPa"
+        value, error = adiabat + float(misfit[near].mean()), float(warmer.std())
+        answer = adiabat + float(warmer.mean()) if comparable(ascent) else None
+        found.append(Headline(name, value, error, answer, 0.0, THEORY, "K", "degC", label))
     return tuple(found)
 
 
-def _cloud_base(
-    dataset: xr.Dataset, ascent: MoistAscent, cloud: Cloud, samples: int, known: finite_size.Drift
-) -> list[Headline]:
-    """Return the pressure at which the liquid of the parcel begins, and the known error of that level."""
-    vapour, liquid = (dataset[name].values for name in ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio"))
-    condensed = liquid + (dataset.rain_mixing_ratio.values if "rain_mixing_ratio" in dataset else 0.0)
+def _cloud_base(dataset: xr.Dataset, ascent: MoistAscent, drawn: Parcels) -> list[Headline]:
+    """Return the pressure at which the liquid of the parcel begins.
+
+    Noise shifts that level by an amount that depends on the slope of the curve, and the measured slope is noisy itself:
+    so error and theory are those of the drawn parcels, measured in the same way.
+    """
     if not ascent.base > ascent.top_pressure:
         return []
-    unit = law.WATER_MASS_RATIO / cloud.air
-    noise = vapour_covariance(cloud, samples) * unit**2
-    scatter = float(np.sqrt(np.linalg.inv(cloud.resists)[:, 0, 0].max())) * unit
-    least = max(LEAST, CLUSTERED * scatter / ascent.total_water)
+    vapour, liquid = (dataset[name].values for name in ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio"))
+    condensed = liquid + (dataset.rain_mixing_ratio.values if "rain_mixing_ratio" in dataset else 0.0)
+    water, unit = ascent.total_water, ascent.total_water / ascent.vapour
+    noise = np.cov(drawn.vapour.T) * unit**2
+    least = max(LEAST, CLUSTERED * float(planned_cloud(ascent).liquid_scatter.max()) / ascent.vapour)
     base = law.measured_cloud_base(dataset.parcel_pressure.values, vapour, condensed, noise, least)
     if base is None or base.pressure > ascent.pressure:  # noise can put it below the ground
         return []
-    # measure theory's parcel in the same way, with its known errors, in frames of the same width
-    path = ascent.planned[1]
-    warmer = known.rate / path.temperature
-    held = np.where(
-        path.liquid > 0.0, path.vapor * (1.0 + path.vapor / law.WATER_MASS_RATIO) * known.latent * warmer, 0.0
-    )
-    off = path.vapor + held + unit * (known.late - known.clustered)
     frames = dataset.environment_pressure.values
-    v = np.interp(np.log(frames[::-1]), np.log(np.array(ascent.route))[::-1], off[::-1])[::-1]
-    # noise shifts the level by an amount that depends on the slope of the curve, and the measured slope is noisy
-    # itself: where it happens to be flat the error would come out several times too large, and the level too low. So
-    # parcels are drawn at random about theory's parcel; their mean contains the known errors and the mean effect of the
-    # noise
-    root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
-    drawn = np.clip(
-        v + np.random.default_rng(_SEED).standard_normal((_DRAWN, len(v))) @ root.T, 0.0, ascent.total_water
-    )
-    seen = [law.measured_cloud_base(frames, each, ascent.total_water - each, noise, least) for each in drawn]
-    levels = [each.pressure for each in seen if each is not None]
-    if len(levels) > 0.5 * _DRAWN:
-        error, expected = float(np.std(levels, ddof=1)), float(np.mean(levels))
-    else:
-        quiet = law.measured_cloud_base(frames, v, ascent.total_water - v, noise, least)
-        error, expected = base.standard_error, quiet.pressure if quiet else ascent.base
+    seen = np.clip((drawn.theory + drawn.vapour) * unit, 0.0, water)
+    found = [law.measured_cloud_base(frames, each, water - each, noise, least) for each in seen]
+    levels = [each.pressure for each in found if each is not None]
+    if len(levels) <= 0.5 * len(seen):
+        return []
+    error, expected = float(np.std(levels, ddof=1)), float(np.mean(levels))
     aside = f"{(expected - ascent.base) / 100.0:+.1f} hPa"
     note = f"theory is {aside} from the condensation level: few molecules, noise, and vapour that condenses late"
-    low, high = ascent.top_pressure, ascent.pressure
-    return [
-        Headline("cloud_base", base.pressure, error, expected, 0.0, note, "Pa", "hPa", "cloud base", low=low, high=high)
-    ]
+    sizes, low, high = (base.pressure, error, expected, 0.0), ascent.top_pressure, ascent.pressure
+    return [Headline("cloud_base", *sizes, note, "Pa", "hPa", "cloud base", low=low, high=high)]

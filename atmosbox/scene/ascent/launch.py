@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import FollowPressure, Mist
-from atmosbox.scene.ascent.finite_size import drift, least_cloud
-from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
+from atmosbox.scene.ascent.drawn_parcels import draw, drift, least_cloud, planned_cloud
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
 from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
@@ -23,52 +22,21 @@ Profile = Callable[[float], float]
 
 
 def rise(
-    ascent: MoistAscent,
-    engine: EngineChoice,
-    *,
-    height: Profile,
-    around: Profile,
-    frames: int,
-    samples: int,
-    seed: int,
+    ascent: MoistAscent, engine: EngineChoice, *, height: Profile, around: Profile, frames: int, samples: int, seed: int
 ) -> Setup:
     """Return a parcel of moist air at the start of its ascent.
 
     Vapour in excess of saturation condenses in the first moments.
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    engine
-        The engine with its options.
-    height, around
-        Height of the parcel [m] and temperature of the environment [K], as functions of the share of the time, 0 to 1.
-    frames, samples
-        Number of frames of the whole ascent, and number of samples of the parcel in each frame.
-    seed
-        Seed of all random numbers.
     """
     scale, n = ascent.scale, ascent.molecules
     _, sides, excess = ascent.box(ideal=engine.ideal)
     mean_free_time = ascent.mean_free_time(ideal=engine.ideal)
     duration = ascent.length * mean_free_time
     shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
-    driver = FollowPressure(
-        list(shares * duration),
-        list(rounded(outside / scale.pressure)),
-        mean_free_time=mean_free_time,
-        relaxation=CLOSING,
-        excess=excess,
-    )
-    mist = Mist(
-        water(scale),
-        kT=1.0,
-        nuclei=ascent.nuclei,
-        rain=RAIN / mean_free_time if ascent.rains else 0.0,
-        keeps=ascent.keeps,
-        area=ascent.area * float(sides[0] * sides[1]),
-    )
+    times, pressures = list(shares * duration), list(rounded(outside / scale.pressure))
+    driver = FollowPressure(times, pressures, mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess)
+    rain, area = RAIN / mean_free_time if ascent.rains else 0.0, ascent.area * float(sides[0] * sides[1])
+    mist = Mist(water(scale), kT=1.0, nuclei=ascent.nuclei, rain=rain, keeps=ascent.keeps, area=area)
     parcel = moist_parcel(engine, n, ascent.vapour, sides, driver=driver, liquid=mist, seed=seed)
     lasted = duration * scale.time
     environment = Environment(
@@ -81,11 +49,13 @@ def rise(
         return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * samples)).temperature
 
     def scatter(pressure: Array) -> Array:
-        cloud = along_frames(ascent, pressure, frames, samples, ideal=engine.ideal)
-        return np.sqrt(np.diag(temperature_covariance(cloud, samples)))
+        return np.asarray(draw(ascent, pressure, frames, samples, ideal=engine.ideal).warmth.std(axis=0))
 
-    known = drift(ascent, ideal=engine.ideal)
-    base = ascent.base
+    planned = planned_cloud(ascent, ideal=engine.ideal)
+    known = planned.temperature * drift(planned)
+    base, rainy = ascent.base, {}
+    if ascent.rains:
+        rainy["rain"] = f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"
     return Setup(
         parcel,
         scale,
@@ -98,12 +68,8 @@ def rise(
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
             "ascent": f"in {duration * scale.time * 1e9:.3g} ns",
-            **(
-                {"rain": f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"}
-                if ascent.rains
-                else {}
-            ),
-            "known errors": f"theory is {known.warmer.min():+.2g} to {known.warmer.max():+.2g} K from the adiabat",
+            **rainy,
+            "known errors": f"theory is {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
         },
         knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
         ends=True,

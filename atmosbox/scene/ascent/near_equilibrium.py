@@ -19,7 +19,6 @@ to 120.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,56 +35,135 @@ _AIR_HEAT = 3.0
 """Variance of the energy of a molecule of air that hits a droplet, in (kT)^2: 2 of its flight, 1 of its rotation."""
 
 
-class Cloud(NamedTuple):
-    """The parcel at some moments of its ascent; see the head of this file.
+class Cloud:
+    r"""The parcel at some moments of its ascent, according to theory; see the head of this file.
 
-    ``moment`` is in mean free times at the start; ``resists : (moment, 2, 2)`` is G and ``yields : (moment, 2, 2)`` is
-    L; ``warms : (moment, 2)`` is the derivative of the logarithm of the gas temperature by x at constant volume.
+    In clear air the number n of molecules in clusters cannot be negative: it varies less, and G is larger.
+
+    **What is a cloud.** Air without a cloud holds the most liquid by chance, called haze here, where it is saturated:
+    n >= 0 then has a probability nearly proportional to :math:`e^{-(n - 1/2)^2 / 2 s^2}`, where :math:`s^2` is the
+    variance of the liquid in a cloud. A cloud is liquid above the mean of this haze plus three standard deviations,
+
+    .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
+              \approx 2.6 \, s .
+
+    Parameters
+    ----------
+    ascent
+        The ascent.
+    pressure : (moment,)
+        Pressures in the order in which the parcel meets them [Pa].
+    share : (moment,)
+        Share of the time of the whole ascent that has passed at each of them, 0 to 1.
+    ideal
+        Whether molecules have no volume.
+    path
+        Temperature and water at these pressures, if they are known already.
+
+    Attributes
+    ----------
+    moment, pressure, temperature
+        Time [mean free times at the start], pressure [Pa] and temperature [K]; all arrays are (moment,).
+    vapour, liquid, rained
+        Numbers of molecules according to theory, which leaves out clusters in clear air.
+    clustered, haze
+        Mean number of liquid molecules that fluctuations add to ``liquid``, and number above which liquid is a cloud.
+    resists, yields : (moment, 2, 2)
+        G and L.
+    warms : (moment, 2)
+        Derivative of the logarithm of the gas temperature by x at constant volume.
+    clear_heat, liquid_heat
+        Heat capacities, in k: of the whole parcel at constant pressure if no vapour condenses; of liquid and nuclei.
+    slope, expansion
+        d ln T / d ln p along the adiabat, and the time derivative of the logarithm of the volume.
+    height
+        Height of the box over the thermal speed sqrt(kT/m) of air [mean free times].
+    free_time, meets
+        Mean free time of the gas, and mean time until a molecule of air hits the mist.
+    hits
+        Number of molecules that hit or leave the mist per unit of time.
+    humidity
+        Relative humidity, at most 1.
+    air, all_molecules
+        Molecules of dry air, and of air and water at the start.
+    keeps, rains
+        Molecules of liquid that the cloud holds before it rains, infinite if it does not rain; and the rate at which
+        each molecule in excess falls out.
+
+    Examples
+    --------
+    In the cloud of the scene lifting-moist the number of liquid molecules scatters by a dozen at 700 hPa:
+
+    >>> from atmosbox import scenarios
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> ascent = scenarios.load("lifting-moist")._ascent(prepare("lifting-moist", {}).settings)
+    >>> cloud = Cloud(ascent, np.array([7.05e4, 7.0e4, 6.95e4]), np.array([0.25, 0.255, 0.26]))
+    >>> round(float(cloud.liquid_scatter[1]))
+    12
+
+    Liquid is a cloud if it is more than chance puts together, some 31 molecules there:
+
+    >>> round(float(cloud.haze[1]))
+    31
     """
 
-    moment: Array
-    pressure: Array
-    """[Pa]."""
-    temperature: Array
-    """[K]."""
-    vapour: Array
-    """Molecules of vapour according to theory."""
-    liquid: Array
-    """Molecules of liquid according to theory, which leaves out clusters in clear air."""
-    clustered: Array
-    """Mean number of liquid molecules that fluctuations add to ``liquid``."""
-    haze: Array
-    """Molecules of liquid that air without a cloud holds at most; what is more is a cloud. See `cloud_along`."""
-    resists: Array
-    yields: Array
-    warms: Array
-    air_heat: Array
-    """Heat capacity of the gas at constant volume, in k."""
-    clear_heat: Array
-    """Heat capacity of the whole parcel at constant pressure if no vapour condenses, in k."""
-    slope: Array
-    """d ln T / d ln p along the adiabat."""
-    expansion: Array
-    """Time derivative of the logarithm of the volume."""
-    height: Array
-    """Height of the box over the thermal speed sqrt(kT/m) of air [mean free times]."""
-    free_time: Array
-    """Mean free time of the gas, in mean free times at the start."""
-    meets: Array
-    """Mean time until a molecule of air hits the mist."""
-    hits: Array
-    """Number of molecules that hit or leave the mist per unit of time."""
+    def __init__(
+        self, ascent: MoistAscent, pressure: Array, share: Array, *, ideal: bool = False,
+        path: law.ParcelPath | None = None,
+    ) -> None:  # fmt: skip
+        path = path or ascent.path(pressure, share)
+        self.pressure, self.temperature, self.moment = pressure, path.temperature, share * ascent.length
+        t = self.temperature
+        self.all_molecules, self.air = ascent.molecules, float(ascent.molecules - ascent.vapour)
+        per_mass = self.air / law.WATER_MASS_RATIO
+        self.vapour: Array = np.maximum(path.vapor * per_mass, _NO_VAPOUR)
+        self.liquid: Array = np.maximum(path.liquid, 0.0) * per_mass
+        self.rained: Array = path.rain * per_mass
+        self.keeps = float(ascent.keeps) if ascent.rains else math.inf
+        self.rains = RAIN if ascent.rains else 0.0
+        humidity = law.vapor_pressure(pressure, path.vapor) / law.saturation_vapor_pressure(t)
+        self.humidity = np.where(self.liquid > 0.0, 1.0, np.clip(humidity, _NO_VAPOUR, 1.0))
+        gas_heat = 2.5 * self.air + 3.0 * self.vapour
+        self.warms = np.stack([3.0 / gas_heat, -1.0 / gas_heat], axis=1)
 
-    liquid_heat: Array
-    """Heat capacity of liquid and nuclei, in k."""
-    air: float
-    """Molecules of dry air."""
-    humidity: Array
-    """Relative humidity, at most 1."""
-    keeps: float
-    """Molecules of liquid that the cloud holds before it rains; infinite if it does not rain."""
-    rains: float
-    """Rate at which each molecule in excess of ``keeps`` falls out."""
+        capacity = law.LIQUID_HEAT_CAPACITY
+        free = np.linalg.inv(self._stiffness(ascent.nuclei + capacity * self.liquid))[:, 0, 0]
+        warming = np.maximum(1.0 / free - 1.0 / self.vapour, 1e-12)
+        mean, variance = _counted(self.vapour, self.liquid, self.humidity, warming)
+        self.clustered = mean - self.liquid
+        haze, scatter = _counted(self.vapour, np.zeros_like(free), np.ones_like(free), warming)
+        self.haze: Array = haze + 3.0 * np.sqrt(scatter)
+        self.liquid_heat: Array = ascent.nuclei + capacity * (self.liquid + self.clustered)
+        self.resists = self._stiffness(self.liquid_heat)
+        self.resists[:, 0, 0] += np.maximum(1.0 / np.maximum(variance, 1e-9) - 1.0 / free, 0.0)
+
+        density, sides, _ = ascent.box(ideal=ideal)
+        hot, thin = t / ascent.temperature, ascent.pressure / pressure
+        squeezed = 1.0 if ideal else law.compressibility_factor(law.packing_fraction(density / thin / hot, 1.0))
+        tall = float(sides[2]) * thin * hot / ascent.mean_free_time(ideal=ideal)
+        thermal = np.sqrt(hot)
+        meets = 4.0 * tall / (ascent.area * thermal * squeezed)
+        self.meets, of_vapour = (meets / float(law.mean_speed(1.0, mass)) for mass in (1.0, law.WATER_MASS_RATIO))
+        condenses, hits = self.vapour * self.humidity / of_vapour, self.air / self.meets
+        self.height, self.free_time, self.hits = tall / thermal, thin * thermal, hits + condenses
+        self.yields = condenses[:, None, None] * _CARRIED
+        self.yields[:, 1, 1] += _AIR_HEAT * hits
+
+        held = self.vapour / self.air
+        heat = 3.5 + ascent.nuclei_heat + law.VAPOR_HEAT_CAPACITY * held + capacity * self.liquid / self.air
+        wet = heat + held * (1.0 + held) * self.latent**2
+        self.clear_heat: Array = self.air * heat
+        cloudy = (1.0 + held) * (1.0 + held * self.latent) / wet
+        self.slope = np.where(self.liquid > 0.0, cloudy, (1.0 + held) / heat)
+        self.expansion: Array = np.gradient(np.log(t) - np.log(pressure), self.moment)
+
+    def _stiffness(self, liquid_heat: Array) -> Array:
+        """Return G: minus the derivative by x of the forces that drive molecules and energy from gas to liquid."""
+        excess = law.BINDING_TEMPERATURE / self.temperature - law.LIQUID_HEAT_CAPACITY
+        warmer = np.stack([excess / liquid_heat, 1.0 / liquid_heat], axis=1)
+        driven = -3.0 * self.warms - excess[:, None] * warmer
+        driven[:, 0] -= 1.0 / self.vapour
+        return -np.stack([driven, self.warms - warmer], axis=1)
 
     @property
     def cloudy_heat(self) -> Array:
@@ -111,19 +189,26 @@ class Cloud(NamedTuple):
         """Return how far a unit of x shifts the gas from the adiabat, as a share of T.
 
         The adiabat is taken at the pressure that the gas has after the shift.
-
-        Parameters
-        ----------
-        density
-            Whether to take the density temperature, which also depends on the molecules of vapour that have condensed.
-
-        Returns
-        -------
-        (moment, 2) ndarray
         """
         gone = np.array([1.0, 0.0]) / self.gas[:, None]
         slope = (self.density_slope if density else self.slope)[:, None]
         return np.asarray(self.warms - density * gone - slope * (self.warms - gone))
+
+    @property
+    def behind(self) -> Array:
+        """Return how far x lags behind its equilibrium while the cloud grows, (moment, 2)."""
+        relaxes = np.einsum("tij,tjk->tik", self.yields, self.resists)
+        return np.asarray(np.linalg.solve(relaxes, self.change[:, :, None])[:, :, 0])
+
+    @property
+    def liquid_scatter(self) -> Array:
+        """Standard deviation of the number of liquid molecules, (moment,)."""
+        return np.asarray(np.sqrt(np.linalg.inv(self.resists)[:, 0, 0]))
+
+    def clusters(self, *, density: bool = False) -> Array:
+        """Return by how much molecules in clusters warm the parcel, as a share of T or of the density temperature."""
+        latent = self.latent - (3.5 if density else 0.0)  # they are missing among the light molecules of the gas
+        return latent * self.clustered / (3.5 * self.all_molecules)
 
     @property
     def density_slope(self) -> Array:
@@ -158,15 +243,6 @@ def _counted(vapour: Array, liquid: Array, humidity: Array, warming: Array) -> t
     One more is as likely as the relative humidity says; each molecule that joins is missing in the vapour, and warms
     the air. So :math:`P(n + 1) / P(n) = f \, (v + l - n) / v \, e^{-b (n + 1/2 - l)}`.
 
-    Parameters
-    ----------
-    vapour, liquid : (moment,)
-        Numbers v and l of molecules according to theory.
-    humidity : (moment,)
-        Relative humidity f according to theory, at most 1.
-    warming : (moment,)
-        By how much b one more liquid molecule lowers the logarithm of the humidity, because it warms the air.
-
     Examples
     --------
     In clear air the mean is RH / (1 - RH), in a cloud that of theory:
@@ -187,116 +263,3 @@ def _counted(vapour: Array, liquid: Array, humidity: Array, warming: Array) -> t
     chance /= chance.sum(axis=1, keepdims=True)
     mean = np.sum(n * chance, axis=1)
     return mean, np.sum((n - mean[:, None]) ** 2 * chance, axis=1)
-
-
-def cloud_along(
-    ascent: MoistAscent, pressure: Array, share: Array, *, ideal: bool = False, path: law.ParcelPath | None = None
-) -> Cloud:
-    r"""Return the parcel along its ascent, according to theory.
-
-    In clear air the number n of molecules in clusters cannot be negative: it varies less, and G is larger.
-
-    **What is a cloud.** Air without a cloud holds the most liquid by chance, called haze here, where it is saturated:
-    n >= 0 then has a probability nearly proportional to :math:`e^{-(n - 1/2)^2 / 2 s^2}`, where :math:`s^2` is the
-    variance of the liquid in a cloud. A cloud is liquid above the mean of this haze plus three standard deviations,
-
-    .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
-              \approx 2.6 \, s .
-
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    pressure : (moment,)
-        Pressures in the order in which the parcel meets them [Pa].
-    share : (moment,)
-        Share of the time of the whole ascent that has passed at each of them, 0 to 1.
-    ideal
-        Whether molecules have no volume.
-    path
-        Temperature and water at these pressures, if they are known already.
-
-    Examples
-    --------
-    In the cloud of the scene lifting-moist the number of liquid molecules scatters by a dozen at 700 hPa:
-
-    >>> from atmosbox import scenarios
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> ascent = scenarios.load("lifting-moist")._ascent(prepare("lifting-moist", {}).settings)
-    >>> cloud = cloud_along(ascent, np.array([7.05e4, 7.0e4, 6.95e4]), np.array([0.25, 0.255, 0.26]))
-    >>> round(float(np.sqrt(np.linalg.inv(cloud.resists)[1, 0, 0])))
-    12
-
-    Liquid is a cloud if it is more than chance puts together, some 31 molecules there:
-
-    >>> round(float(cloud.haze[1]))
-    31
-    """
-    path = path or ascent.path(pressure, share)
-    t, moment = path.temperature, share * ascent.length
-    air = float(ascent.molecules - ascent.vapour)
-    vapour = np.maximum(path.vapor / law.WATER_MASS_RATIO * air, _NO_VAPOUR)
-    liquid = np.maximum(path.liquid, 0.0) / law.WATER_MASS_RATIO * air
-    humidity = law.vapor_pressure(pressure, path.vapor) / law.saturation_vapor_pressure(t)
-    humidity = np.where(liquid > 0.0, 1.0, np.clip(humidity, _NO_VAPOUR, 1.0))
-    binding, capacity = law.BINDING_TEMPERATURE / t, law.LIQUID_HEAT_CAPACITY
-    gas_heat = 2.5 * air + 3.0 * vapour
-    warms = np.stack([3.0 / gas_heat, -1.0 / gas_heat], axis=1)
-
-    def stiffness(liquid_heat: Array) -> Array:
-        """Return G: minus the derivative by x of the forces that drive molecules and energy from gas to liquid."""
-        warmer = np.stack([(binding - capacity) / liquid_heat, 1.0 / liquid_heat], axis=1)
-        driven = -3.0 * warms + (capacity - binding)[:, None] * warmer
-        driven[:, 0] -= 1.0 / vapour
-        return -np.stack([driven, warms - warmer], axis=1)
-
-    free = np.linalg.inv(stiffness(ascent.nuclei + capacity * liquid))[:, 0, 0]
-    warming = np.maximum(1.0 / free - 1.0 / vapour, 1e-12)
-    mean, variance = _counted(vapour, liquid, humidity, warming)
-    clustered = mean - liquid
-    haze, scatter = _counted(vapour, np.zeros_like(free), np.ones_like(free), warming)
-    liquid_heat = ascent.nuclei + capacity * (liquid + clustered)
-    resists = stiffness(liquid_heat)
-    resists[:, 0, 0] += np.maximum(1.0 / np.maximum(variance, 1e-9) - 1.0 / free, 0.0)
-
-    density, sides, _ = ascent.box(ideal=ideal)
-    packed = law.packing_fraction(density * (pressure / ascent.pressure) / (t / ascent.temperature), 1.0)
-    squeezed = 1.0 if ideal else law.compressibility_factor(packed)
-    tall = float(sides[2]) * ascent.pressure / pressure * t / ascent.temperature / ascent.mean_free_time(ideal=ideal)
-    thermal = np.sqrt(t / ascent.temperature)
-    meets = 4.0 * tall / (ascent.area * thermal * squeezed)
-    of_air, of_vapour = (meets / float(law.mean_speed(1.0, mass)) for mass in (1.0, law.WATER_MASS_RATIO))
-    condenses, hits = vapour * humidity / of_vapour, air / of_air
-    free_time = ascent.pressure / pressure * thermal
-    yields = condenses[:, None, None] * _CARRIED
-    yields[:, 1, 1] += _AIR_HEAT * air / of_air
-
-    held, latent = vapour / air, binding - (capacity - law.VAPOR_HEAT_CAPACITY)
-    heat = 3.5 + ascent.nuclei_heat + law.VAPOR_HEAT_CAPACITY * held + capacity * liquid / air
-    wet = heat + held * (1.0 + held) * latent**2
-    slope = np.where(liquid > 0.0, (1.0 + held) * (1.0 + held * latent) / wet, (1.0 + held) / heat)
-    return Cloud(
-        moment=moment,
-        pressure=pressure,
-        temperature=t,
-        vapour=vapour,
-        liquid=liquid,
-        clustered=np.asarray(clustered),
-        haze=np.asarray(haze + 3.0 * np.sqrt(scatter)),
-        resists=resists,
-        yields=yields,
-        warms=warms,
-        air_heat=np.asarray(gas_heat),
-        clear_heat=air * heat,
-        slope=slope,
-        expansion=np.gradient(np.log(t) - np.log(pressure), moment),
-        height=np.asarray(tall / thermal),
-        free_time=np.asarray(free_time),
-        meets=np.asarray(of_air),
-        hits=np.asarray(hits + condenses),
-        liquid_heat=np.asarray(liquid_heat),
-        air=air,
-        humidity=humidity,
-        keeps=float(ascent.keeps) if ascent.rains else math.inf,
-        rains=RAIN if ascent.rains else 0.0,
-    )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +23,7 @@ FLATNESS = 0.1
 """Height of the box over its width at the start.
 
 The droplets flow with the air, the faster the higher they are, and the random pushes of the molecules on them do random
-work: there is less of it in a low box, see `atmosbox.scene.ascent.random_walk`.
+work: there is less of it in a low box, see `atmosbox.scene.ascent.drawn_parcels`.
 """
 RAIN = 0.05
 """Rate at which each molecule in excess of what the cloud holds falls out as rain, per mean free time at the start.
@@ -64,15 +66,34 @@ class MoistAscent:
     area: float
     most_liquid: float = math.inf
 
+    @classmethod
+    def of(
+        cls, settings: Any, length: float, route: Array, temperature: float, pressure: float, dewpoint: float
+    ) -> MoistAscent:
+        """Return the ascent of a scene with the settings molecules, diameter, area, rain and cloud_water."""
+        return cls(
+            molecules=settings.molecules,
+            diameter=settings.si.diameter,
+            temperature=temperature,
+            pressure=pressure,
+            vapour_pressure=float(law.saturation_vapor_pressure(dewpoint)),
+            route=tuple(route.tolist()),
+            length=length,
+            area=settings.area,
+            most_liquid=settings.si.cloud_water if settings.rain else math.inf,
+        )
+
+    @classmethod
+    def over_ground(cls, settings: Any, length: float, heights: Sequence[float] | Array) -> MoistAscent:
+        """Return the ascent through these heights [m] in air of a constant lapse rate; see `of`."""
+        si = settings.si
+        route = law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate)
+        return cls.of(settings, length, route, si.temperature, si.pressure, si.dewpoint)
+
     @property
     def top_pressure(self) -> float:
         """Lowest pressure of the ascent [Pa]."""
         return min(self.route)
-
-    @property
-    def travel(self) -> float:
-        """Total change of the logarithm of the pressure along the ascent, up and down."""
-        return float(np.abs(np.diff(np.log(self.route))).sum())
 
     @property
     def scale(self) -> Scale:
@@ -119,15 +140,12 @@ class MoistAscent:
         """Whether liquid falls out."""
         return math.isfinite(self.most_liquid)
 
-    def path(self, pressure: Array, share: Array, scatter: float = 0.0) -> law.ParcelPath:
-        """Return temperature and water at pressures [Pa] that are met at these shares of the time, 0 to 1.
-
-        If it rains, ``scatter`` is the standard deviation of the liquid [kg kg-1], which makes more rain.
-        """
+    def path(self, pressure: Array, share: Array) -> law.ParcelPath:
+        """Return temperature and water at pressures [Pa] that are met at these shares of the time, 0 to 1."""
         start = self.pressure, self.temperature, self.total_water
         if not self.rains:
             return law.parcel_path(pressure, *start, nuclei_heat=self.nuclei_heat)
-        rain = RAIN, self.most_liquid, self.nuclei_heat, scatter
+        rain = RAIN, self.most_liquid, self.nuclei_heat
         return law.raining_path(share * self.length, pressure, *start, *rain)
 
     @functools.cached_property
@@ -162,18 +180,6 @@ class MoistAscent:
 def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "the pressure at the ground") -> None:
     """Refuse an ascent that does not go up.
 
-    Parameters
-    ----------
-    top_pressure, ground_pressure
-        Pressure at the end and at the start of the ascent [hPa].
-    ground
-        Name of the pressure at the start, for the message.
-
-    Raises
-    ------
-    SettingError
-        If the top is less than 2 % below the ground.
-
     Examples
     --------
     >>> refuse_descent(990.0, 1000.0)
@@ -193,11 +199,6 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
 
 def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     """Refuse a dewpoint above the temperature, both in degC.
-
-    Raises
-    ------
-    SettingError
-        If the air holds more vapour than saturation.
 
     Examples
     --------

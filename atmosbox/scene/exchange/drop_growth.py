@@ -86,9 +86,8 @@ class DropGrowth:
         n = np.asarray(number, np.float64)
         half = np.maximum(n - 0.5, 0.0)
         surface = law.kelvin_radius(self.tension, law.WATER_VOLUME, self._kT) / self.radius(half, kind)
-        volume = (
-            law.WATER_VOLUME * self.width**3 * (1.0 + 0.5 * DRY_AIR.diameter / self.width / self.radius(n, kind)) ** 2
-        )
+        reach = 1.0 + 0.5 * DRY_AIR.diameter / self.width / self.radius(n, kind)
+        volume = law.WATER_VOLUME * self.width**3 * reach**2
         room = (self.box.side * self.box.scale.length) ** 3
         activity = n / (n + kind.particles) if kind.particles else np.minimum(n, 1.0)
         humidity: Array = activity * np.exp(surface + self.box.molecules / room * volume)
@@ -127,32 +126,24 @@ class DropGrowth:
         """Return the numbers of molecules in a drop of each kind, ``(kind, time)``, and the humidity, ``(time,)``."""
         return _path(self, tuple(time.tolist()))
 
-    def scatter(self, time: Array, number: Array, humidity: Array) -> tuple[Array, Array, Array]:
-        r"""Return how far fluctuations spread the drops of the first kind: two variances and a time, each ``(time,)``.
+    def scatter(self, time: Array, number: Array, humidity: Array) -> tuple[Array, Array]:
+        r"""Return the variance of the mean number of molecules in the drops of the first kind, and its memory [s].
 
         Molecules hit and leave a drop at random, :math:`2 J a S` times per unit of time. The mean of c drops returns
-        within the time :math:`\tau`, because vapour in the drops is missing in the air. Only the law of Koehler
-        restores, or amplifies, the difference of a drop from the mean:
+        within the time :math:`\tau`, because vapour in the drops is missing in the air, and by the law of Koehler:
 
         .. math:: \frac1\tau = J a \left[\frac{c}{W_s} + \frac{dS_n}{dn}\right], \qquad
-                  \dot V_m = \frac{2 J a S}{c} - \frac{2 V_m}{\tau}, \qquad
-                  \dot V_d = 2 J a S \left(1 - \frac1c\right) - 2 J a \frac{dS_n}{dn} V_d .
-
-        Returns
-        -------
-        (ndarray, ndarray, ndarray)
-            Variance of the mean number of molecules, variance of the differences from it, relaxation time [s].
+                  \dot V = \frac{2 J a S}{c} - \frac{2 V}{\tau} .
         """
         kind, n = self.kinds[0], number[0]
         steep = 0.5 * (self.over(n + 1.0, kind) - self.over(np.maximum(n - 1.0, 0.0), kind))
         flux = self.flux * self.area(n, kind)
         back = flux * (kind.count / self.box.full + steep)
-        together, apart = np.zeros(len(time)), np.zeros(len(time))
+        gained, variance = 2.0 * flux * humidity / kind.count, np.zeros(len(time))
         for k in range(1, len(time)):
-            step, noise = time[k] - time[k - 1], 2.0 * flux[k] * humidity[k]
-            together[k] = _relaxed(together[k - 1], noise / kind.count, 2.0 * back[k], step)
-            apart[k] = _relaxed(apart[k - 1], noise * (1.0 - 1.0 / kind.count), 2.0 * flux[k] * steep[k], step)
-        return together, apart, 1.0 / np.abs(back)
+            decayed = -np.expm1(-2.0 * back[k] * (time[k] - time[k - 1]))
+            variance[k] = variance[k - 1] * (1.0 - decayed) + gained[k] / (2.0 * back[k]) * decayed
+        return variance, 1.0 / np.abs(back)
 
 
 @functools.lru_cache(maxsize=2)
@@ -168,9 +159,3 @@ def _path(growth: DropGrowth, time: tuple[float, ...]) -> tuple[Array, Array]:
     found = integrate.solve_ivp(slope, (0.0, time[-1]), start, "LSODA", time, rtol=1e-8, atol=1e-8)
     number = np.maximum(found.y, 0.0)
     return number, growth.humidity(number)
-
-
-def _relaxed(value: float, gained: float, rate: float, step: float) -> float:
-    """Return the solution of dV/dt = gained - rate V after a step of time, from a value at its start."""
-    decayed = -np.expm1(-rate * step)
-    return float(value * (1.0 - decayed) + (gained / rate * decayed if rate else gained * step))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,6 +45,12 @@ class MoistBox:
     pressure: float
     humidity: float
     ideal: bool = False
+
+    @classmethod
+    def of(cls, settings: Any, *, ideal: bool) -> MoistBox:
+        """Return the air of a scene with the settings molecules, temperature, pressure and humidity."""
+        si = settings.si
+        return cls(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
     @property
     def scale(self) -> Scale:
@@ -118,13 +125,6 @@ class MoistBox:
         The volume of real molecules is too small to show this: drops s times too wide have s^3 times the volume. The
         last factor counts the ways to divide L molecules among D drops; an empty drop has none to lose.
 
-        Parameters
-        ----------
-        liquid, drops : (time,)
-            Number L of molecules in the drops, and number D of drops.
-        ball
-            Radius of the sphere that a molecule fills, and of a nucleus [diameter].
-
         Examples
         --------
         >>> air = MoistBox(10_000, 293.15, 1e5, 1.5)
@@ -147,13 +147,18 @@ class MoistBox:
         molecules. A hit carries 3 kT. With the share x of the vapour and :math:`\ell = L/kT`,
 
         .. math:: \frac{4 V}{A \bar c_v} + \frac{x \ell^2}{3} \frac{4 V}{\bar c_a} \left[\frac1A + \frac1{A_w}\right].
-
-        Parameters
-        ----------
-        faces
-            Area of the liquid, in faces of the box.
         """
         latent = law.BINDING_TEMPERATURE / self.temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
         find, cool = (4.0 * self.side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))
         held = self.saturated / self.pressure * latent**2 / 3.0 * cool * (1.0 / faces + 1.0 / 6.0)
         return float((find / faces + held) * self.scale.time)
+
+
+def refuse_vapour_alone(settings: Any) -> None:
+    """Refuse so much vapour that no air is left."""
+    most = settings.si.pressure / float(law.saturation_vapor_pressure(settings.si.temperature))
+    if settings.si.humidity > most:
+        place = f"{settings.pressure:g} hPa and {settings.temperature:g} degC"
+        raise settings.refusal(
+            "humidity", f"is more vapour than there is gas at {place}", at_most=math.floor(100.0 * most)
+        )

@@ -176,17 +176,7 @@ def temperature_of_those_that_left(dataset: xr.Dataset) -> float:
 
 
 def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int) -> tuple[Headline, ...]:
-    """Return the mean energy of the molecules that leave, if many have left a pool of many molecules.
-
-    Parameters
-    ----------
-    dataset
-        The run.
-    start
-        The air over its pool.
-    few
-        Least number of molecules that must have left, and of molecules in the pool.
-    """
+    """Return the mean energy of the molecules that leave, if many have left a pool of many molecules."""
     left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
     if min(left, start.pool) < few or not np.isfinite(dataset.liquid_temperature.values).all():
         return ()
@@ -195,16 +185,9 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
     share = dataset.leaving_energy_probability_density.values * width
     mean = float(middle @ share)
     flux = BOLTZMANN * law.LEAVING_FREEDOM * warm
-    return (
-        Headline(
-            "energy_of_those_that_leave",
-            mean,
-            math.sqrt(float((middle - mean) ** 2 @ share) / left),
-            BOLTZMANN * law.BINDING_TEMPERATURE + flux,
-            flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
-            "molecules leave a pool of few molecules mostly while it is warm by chance",
-            "J",
-            "zJ",
-            "energy of leaving molecules",
-        ),
-    )
+    answer = BOLTZMANN * law.BINDING_TEMPERATURE + flux
+    error = math.sqrt(float((middle - mean) ** 2 @ share) / left)
+    known = flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool)
+    reason = "molecules leave a pool of few molecules mostly while it is warm by chance"
+    name, label = "energy_of_those_that_leave", "energy of leaving molecules"
+    return (Headline(name, mean, error, answer, known, reason, "J", "zJ", label),)

@@ -6,8 +6,7 @@ file           what is in it
 column         names, units and plausible values of the columns of a sounding
 profile        the sounding itself, what no ascent can be, and what is doubtful in one
 formats        the text formats: Wyoming, IGRA, BUFKIT, SHARPpy, and CSV and the like
-netcdf         profiles as xarray and MetPy write them
-reading        from a file to a sounding: recognises the format; units, missing values, order
+reading        from a file to a sounding: recognises the format, also netCDF; units, missing values, order
 analytic       Weisman and Klemp's formula for the environment of a thunderstorm
 lifted_parcel  LCL, LFC, EL, CAPE and CIN, by MetPy, and the heights of levels
 ============== =========================================================================

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +15,7 @@ _EPSILON = WATER.molar_mass / DRY_AIR.molar_mass
 _GROUND, _GROUND_THETA = 1000e2, 300.0  # Pa, K
 _TROPOPAUSE, _TROPOPAUSE_THETA, _TROPOPAUSE_TEMPERATURE = 12e3, 343.0, 213.0  # m, K, K
 _TOP, _LEVELS, _STEPS = 16e3, 65, 25  # m; levels every 250 m; steps of the integration between two levels
+_TURNS = 20  # after ten nothing changes
 
 Floats = NDArray[np.float64]
 
@@ -34,11 +33,6 @@ def weisman_klemp(mixing_ratio: float = 0.014) -> Sounding:
     mixing_ratio
         The largest mixing ratio of vapour, 0.011 to 0.016 in the paper [kg kg-1].
 
-    Returns
-    -------
-    Sounding
-        65 levels, every 250 m up to 16 km.
-
     Raises
     ------
     SettingError
@@ -47,7 +41,7 @@ def weisman_klemp(mixing_ratio: float = 0.014) -> Sounding:
     Notes
     -----
     The hydrostatic equation is that of the Exner function, d pi / dz = -g / (c_p theta_v), with the virtual potential
-    temperature of the same sounding, integrated by the midpoint rule in steps of 10 m. Saturation is with respect to
+    temperature of the same sounding, integrated by the trapezoidal rule in steps of 10 m. Saturation is with respect to
     liquid water at all temperatures and follows Bolton's formula, whose inverse gives the dewpoint [2]_. In hydrostatic
     balance, 343 K at 12 km is a temperature of 217 K, not quite the T_tr of 213 K, which only sets the slope above.
 
@@ -89,32 +83,22 @@ def weisman_klemp(mixing_ratio: float = 0.014) -> Sounding:
 
 
 def _balance(height: Floats, theta: Floats, humidity: Floats, cap: float) -> tuple[Floats, Floats]:
-    """Return pressure and mixing ratio in hydrostatic balance; each depends on the other."""
-    power = _HEAT / _DRY_GAS
-    step = float(height[1] - height[0])
-
-    def vapor_at(exner: float, potential: float, relative: float) -> float:
-        pressure = float(_GROUND * exner**power)
-        saturation = min(_saturation_pressure(potential * exner), 0.5 * pressure)
-        return min(cap, relative * _EPSILON * saturation / (pressure - saturation))
-
-    def slope(exner: float, potential: float, relative: float) -> float:
-        vapor = vapor_at(exner, potential, relative)
-        return -STANDARD_GRAVITY / (_HEAT * potential * (1.0 + vapor / _EPSILON) / (1.0 + vapor))
-
-    exner = [1.0]
-    for i in range(height.size - 1):
-        half = exner[-1] + slope(exner[-1], theta[i], humidity[i]) * step / 2
-        middle = (theta[i] + theta[i + 1]) / 2, (humidity[i] + humidity[i + 1]) / 2
-        exner.append(exner[-1] + slope(half, *middle) * step)
-    vapor = [vapor_at(*at) for at in zip(exner, theta, humidity, strict=True)]
-    return _GROUND * np.array(exner) ** power, np.array(vapor)
+    """Return pressure and mixing ratio in hydrostatic balance; each depends on the other, and so they take turns."""
+    exner = np.ones_like(height)
+    for _ in range(_TURNS):
+        pressure = _GROUND * exner ** (_HEAT / _DRY_GAS)
+        saturation = np.minimum(_saturation_pressure(theta * exner), 0.5 * pressure)
+        vapor = np.minimum(cap, humidity * _EPSILON * saturation / (pressure - saturation))
+        slope = -STANDARD_GRAVITY / (_HEAT * theta * (1.0 + vapor / _EPSILON) / (1.0 + vapor))
+        steps = 0.5 * (slope[1:] + slope[:-1]) * np.diff(height)
+        exner = np.concatenate([[1.0], 1.0 + np.cumsum(steps)])
+    return pressure, vapor
 
 
-def _saturation_pressure(temperature: float) -> float:
+def _saturation_pressure(temperature: Floats) -> Floats:
     """Return the saturation vapor pressure over liquid water [Pa]: Bolton (1980), eq. 10."""
     celsius = temperature - 273.15
-    return float(611.2 * math.exp(17.67 * celsius / (celsius + 243.5)))
+    return np.asarray(611.2 * np.exp(17.67 * celsius / (celsius + 243.5)))
 
 
 def _dewpoint(vapor_pressure: Floats) -> Floats:

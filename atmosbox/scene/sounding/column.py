@@ -110,24 +110,7 @@ def _split(cell: str) -> tuple[str, str | None]:
 
 
 def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, str | None]]:
-    """Return the column of each quantity in a table, and its unit.
-
-    Parameters
-    ----------
-    header
-        The names of the columns, with or without units.
-    where
-        The file and the line of the header, for messages.
-
-    Returns
-    -------
-    dict
-        For every quantity that was found, the number of its column and the unit written there, or None.
-
-    Raises
-    ------
-    SoundingError
-        If two columns have the same name for the same quantity.
+    """Return the column of each quantity in a table and its unit, or None; ``where`` is the place of the header.
 
     Examples
     --------
@@ -149,21 +132,7 @@ def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, st
 
 
 def unit_of(quantity: str, text: str | None, where: str) -> Unit:
-    """Return the unit of a column.
-
-    Parameters
-    ----------
-    quantity
-        One of :data:`QUANTITIES`.
-    text
-        The unit as it is written; None or empty if there is none.
-    where
-        The file and the line, for messages.
-
-    Raises
-    ------
-    SoundingError
-        If there is no unit, an unknown one, or one of another quantity.
+    """Return the unit of a column from its text, which may be empty; refuse one of another quantity.
 
     Examples
     --------
@@ -192,21 +161,7 @@ def in_si(values: Floats, unit: Unit) -> Floats:
 
 
 def number(token: str, quantity: str, where: str) -> float:
-    """Return the number in a cell, NaN if the cell marks a missing value.
-
-    Parameters
-    ----------
-    token
-        The text of the cell. Empty, NaN, NA, null, M, dashes, slashes and asterisks mark a missing value.
-    quantity
-        What is measured, for messages.
-    where
-        The file and the line, for messages.
-
-    Raises
-    ------
-    SoundingError
-        If the text is not a finite number.
+    """Return the number in a cell, NaN if the cell marks a missing value: empty, NaN, NA, M, dashes, slashes, stars.
 
     Examples
     --------
@@ -234,23 +189,7 @@ def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
 
 
 def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> None:
-    """Refuse values that do not occur in the atmosphere, and name the unit that they look like.
-
-    Parameters
-    ----------
-    quantity
-        One of :data:`~atmosbox.scene.sounding.column.QUANTITIES`.
-    values : (level,)
-        The values in `unit`, NaN where they are missing; at least one is a number.
-    unit
-        The unit in which they are read.
-    place
-        Function that returns the place of a level in the file.
-
-    Raises
-    ------
-    SoundingError
-        If a value is outside the limits of the quantity, or the largest pressure cannot be that of a ground.
+    """Refuse values : (level,) in a unit that do not occur in the atmosphere, and name the unit that they look like.
 
     Examples
     --------

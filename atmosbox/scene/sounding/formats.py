@@ -40,21 +40,7 @@ def _table(
     text: Text, kind: str, head: int, names: Sequence[str], rows: Iterable[tuple[int, Sequence[str]]], *,
     units: Mapping[str, str | None] = _UNITS, title: str = "", soundings: int = 1, whole: bool = True,
 ) -> Table:  # fmt: skip
-    """Return a table of rows; each is the index of its line and its cells.
-
-    Parameters
-    ----------
-    kind
-        The format.
-    head, names
-        The index of the line that names the columns, and the names.
-    units
-        The unit of each quantity; those that are written with the names prevail.
-    soundings
-        Number of soundings in the file.
-    whole
-        Whether a row must have a cell for each name, and not only for those that are read.
-    """
+    """Return a table of rows; each is the index of its line and its cells."""
     columns = stated_columns(names, text.place(head))
     least = len(names) if whole else max(at for at, _ in columns.values()) + 1
     values, places = [], []

@@ -57,16 +57,6 @@ class Indices(NamedTuple):
 def indices(sounding: Sounding) -> Indices:
     r"""Return LCL, LFC, EL, CAPE and CIN of the parcel of the lowest level.
 
-    Parameters
-    ----------
-    sounding
-        The ascent.
-
-    Returns
-    -------
-    Indices
-        The numbers in SI units. A level that does not exist is None, but CAPE and CIN are 0.
-
     Raises
     ------
     SoundingError
@@ -127,16 +117,6 @@ def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
     r"""Return the height of each level above the lowest one, in hydrostatic balance [m].
 
     Moist air is light; so the hypsometric equation dz = -(R_d T_v / g) d ln p uses the virtual temperature [1]_.
-
-    Parameters
-    ----------
-    sounding
-        The ascent.
-
-    Returns
-    -------
-    ndarray
-        Geopotential height (level,), 0 at the lowest level [m].
 
     Notes
     -----

@@ -67,10 +67,6 @@ class Sounding:
         If the columns differ in length, if a value is not finite or does not occur in the atmosphere, or if the levels
         do not make an ascent (see :func:`check_levels`).
 
-    Notes
-    -----
-    The arrays are read-only copies.
-
     Examples
     --------
     >>> pressure = [1000e2, 850e2, 700e2, 500e2, 300e2]
@@ -134,17 +130,7 @@ class Sounding:
 
 
 def widest_gap(pressure: Floats) -> tuple[float, int]:
-    """Return the widest gap between two levels of the lower and middle troposphere.
-
-    Parameters
-    ----------
-    pressure : (level,)
-        Pressure, decreasing [Pa].
-
-    Returns
-    -------
-    tuple of float and int
-        The difference in pressure [Pa], and the index of the level below the gap.
+    """Return the widest gap between two levels below the 300 hPa surface [Pa], and the index of the level below it.
 
     Examples
     --------
@@ -158,17 +144,6 @@ def widest_gap(pressure: Floats) -> tuple[float, int]:
 
 def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
     """Return what is doubtful in a possible sounding, one sentence each.
-
-    Parameters
-    ----------
-    pressure, temperature : (level,)
-        The levels from the ground up [Pa, K].
-
-    Returns
-    -------
-    list of str
-        Layers that are steeper than the dry adiabat by more than `STEEPEST`, inversions above `STRONGEST_INVERSION`, a
-        gap above `DOUBTFUL_GAP`, and a top below the 300 hPa surface.
 
     Examples
     --------
@@ -201,20 +176,7 @@ def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
 
 
 def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, place: Place) -> None:
-    """Refuse levels that do not make an ascent.
-
-    Parameters
-    ----------
-    pressure, temperature, dewpoint : (level,)
-        The levels from the ground up, complete [Pa, K, K].
-    place
-        Function that returns the place of a level in the file.
-
-    Raises
-    ------
-    SoundingError
-        If there are fewer than five levels, if the pressure does not decrease from each to the next, if a dewpoint is
-        above its temperature, or if there is a gap of more than 250 hPa below the 300 hPa surface.
+    """Refuse levels that do not make an ascent: too few, not in order, a dewpoint above its temperature, a wide gap.
 
     Examples
     --------

@@ -31,11 +31,6 @@ def profile(path: str | os.PathLike[str], file: str, name: str) -> Table:
 
     Variables are found by their standard_name, or else by their own name; pressure may be a coordinate.
 
-    Raises
-    ------
-    SoundingError
-        If the file is damaged, lacks a variable, or holds more than one profile.
-
     Examples
     --------
     >>> import tempfile
@@ -121,15 +116,7 @@ def read(path: str | os.PathLike[str]) -> Sounding:
     file of IGRA, version 2, or of BUFKIT, of which the first sounding is read; SHARPpy's text; a table with named
     columns (CSV); netCDF with variables as users of MetPy name them.
 
-    Parameters
-    ----------
-    path
-        The file.
-
-    Returns
-    -------
-    Sounding
-        The ascent. See :func:`sounding_of` for the treatment of missing values.
+    See :func:`sounding_of` for the treatment of missing values.
 
     Raises
     ------
@@ -201,11 +188,6 @@ def sounding_of(table: Table) -> Sounding:
     A level without pressure or temperature is left out, and so is a level without dewpoint below another that has one,
     as in MetPy. Above the highest dewpoint, where radiosondes cease to report it, the dewpoint is set 30 K below the
     temperature. Of a level that is given twice, one is left out. The remarks list all this.
-
-    Raises
-    ------
-    SoundingError
-        If a column or its unit is missing, or if the levels do not make an ascent.
 
     Examples
     --------
