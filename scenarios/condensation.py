@@ -209,12 +209,12 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     vapour = over_time(
         "The air becomes saturated", {"water_vapor_partial_pressure": "vapour"}, "vapour pressure", "hPa",
         log=True, parts=PARTS, headline="mean_water_vapor_partial_pressure", theory="saturation, prescribed",
-        start=begun, note="Then the vapour pressure fluctuates by chance.",
+        start=begun, note="Then the vapour pressure fluctuates by chance.", y_limits=(0.0,),
     )  # fmt: skip
     rates = over_time(
         "Then as many condense as evaporate",
         {"condensation_rate": "condensation", "evaporation_rate": "evaporation"}, "molecules per time", "ns-1",
-        log=True, parts=PARTS, headline="mean_condensation_rate", theory="theory",
+        log=True, parts=PARTS, headline="mean_condensation_rate", theory="theory", y_limits=(0.0,),
         note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
     )  # fmt: skip
     return (vapour, rates, grown) if settings.drops else (vapour, rates)

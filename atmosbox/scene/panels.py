@@ -146,7 +146,8 @@ class Panel:
     guides : tuple of (axis, value, text)
         Thin lines across the graph, each at a value of one axis ("x" or "y"), with a text beside it that may be empty.
     x_limits, y_limits : tuple of float
-        The two ends of an axis, in its unit; empty for an axis that shows all values.
+        The two ends of an axis, in its unit; empty for an axis that shows all values. Of a ``line`` panel,
+        ``y_limits`` may be the lower end alone.
     areas : bool
         Whether the area between the first curve of a ``profile`` and zero is shaded: positive as CAPE, negative as CIN.
 
@@ -201,7 +202,7 @@ class Panel:
             if not isinstance(values[name], tuple) or not all(isinstance(value, kind) for value in values[name]):
                 wrong.append(f"{name} {panel} is not a tuple of {kind.__name__}")
         for name in ("start", "x_limits", "y_limits"):
-            if len(values[name]) not in (0, 2):
+            if len(values[name]) not in (0, 2) and (name, len(values[name]), self.kind) != ("y_limits", 1, "line"):
                 wrong.append(f"{name} {panel} is {values[name]!r}, and has two numbers")
         if any(len(guide) != 3 or guide[0] not in ("x", "y") for guide in self.guides):
             wrong.append(f"a guide {panel} is not an axis, a value and a text")

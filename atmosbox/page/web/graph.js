@@ -127,7 +127,7 @@ export class Graph {
 
   #measure() {
     const known = { x: [], y: [] }, { kind, planned, start, limits, across } = this.panel;
-    const inside = (value, [one, other] = []) => one === undefined || (value - one) * (value - other) <= 0;
+    const inside = (value, [one, other = 1e300] = []) => one === undefined || (value - one) * (value - other) <= 0;
     const add = (x, y) => {
       if (!Number.isFinite(x) || !Number.isFinite(y) || !inside(x, limits?.x) || !inside(y, limits?.y)) return;
       known.x.push(x);
@@ -163,8 +163,9 @@ export class Graph {
       if (kind === "histogram") [low, margin] = [axis === "y" ? 0 : Math.max(0, low), 0.03];
       const floor = !log && low >= 0 && low < 0.2 * high && (kind === "profile" || (axis === "x" && kind === "line"));
       const span = high - low;
-      const ends = limits?.[axis].map(this.to[axis]).toSorted((one, other) => one - other) ?? [];
-      this.range[axis] = ends.length ? ends : [floor || (kind === "histogram" && low === 0) ? Math.min(low, 0) : low - margin * span, high + margin * span];
+      const [least, most] = limits?.[axis].map(this.to[axis]).toSorted((one, other) => one - other) ?? [];
+      const lower = floor || (kind === "histogram" && low === 0) ? Math.min(low, 0) : low - margin * span;
+      this.range[axis] = [least ?? lower, most ?? high + margin * span];
     }
     if (this.fixed) Object.assign(this.range, this.fixed);
     if (kind === "atmosphere" && known.y.length) {
