@@ -4,8 +4,7 @@ import math
 from abc import abstractmethod
 
 from atmosbox.engine.core.account import Account
-from atmosbox.engine.core.inputs import number
-from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, number, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, SPECULAR, WALL_NAMES, HeatBath, Specular, new_walls
 
 
@@ -82,9 +81,7 @@ class Adjustable(Account):
         >>> box.wall_kT().tolist()
         [1.0, 1.0, 1.0, 1.0, 2.0, 1.0]
         """
-        kT = number(kT, "kT of a wall", most=LARGEST)
-        if not kT > 0.0:
-            raise RefusedError(f"kT of a wall = {kT} is not positive: give a number above 0")
+        kT = number(kT, "kT of a wall", above=0.0, most=LARGEST)
         baths = [w for w, law in enumerate(self._walls.law) if law == HEAT_BATH]
         if wall is not None and wall not in baths:
             name = WALL_NAMES[wall] if 0 <= wall < len(WALL_NAMES) else wall

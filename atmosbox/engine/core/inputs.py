@@ -80,41 +80,6 @@ def column(
     return column if shared else column.copy()
 
 
-def number(value: Any, name: str, *, least: float = -math.inf, most: float = math.inf, infinite: bool = False) -> float:
-    """Return a number within its limits, or refuse.
-
-    Examples
-    --------
-    >>> number(9.8, "gravity", least=0.0)
-    9.8
-    """
-    try:
-        found = float(value)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} = {shown(value)} is not a number: give a number") from None
-    if math.isnan(found) or (math.isinf(found) and not infinite) or not least <= found <= most:
-        limits = f"from {least:g}" + (f" to {most:g}" if math.isfinite(most) else " up")
-        raise RefusedError(
-            f"{name} = {shown(value)} is impossible: give a finite number"
-            + (f" {limits}" if math.isfinite(least) else "")
-        )
-    return found
-
-
-def whole(value: Any, name: str, *, least: int) -> int:
-    """Return a whole number that is not below ``least``, or refuse.
-
-    Examples
-    --------
-    >>> whole(25, "layers", least=1)
-    25
-    """
-    found = number(value, name, least=least)
-    if found != math.floor(found):
-        raise RefusedError(f"{name} = {shown(value)} is not a whole number: give one from {least} up")
-    return int(value)
-
-
 def sides_of(length: Any) -> Array:
     """Return the three sides of a box, or refuse.
 

@@ -144,9 +144,19 @@ class ForeignError(PermissionError):
         super().__init__(f"{path} is not used for compiled code, because {reason}: {remedy}.")
 
 
+@contextlib.contextmanager
+def excused() -> Iterator[None]:
+    """Go on without what cannot be read or written, and warn once of what is not ours."""
+    try:
+        yield
+    except ForeignError as error:
+        _warn_once(str(error))
+    except Exception:
+        pass
+
+
 @functools.cache
-def warn_once(sentence: str) -> None:
-    """Warn, the first time that this sentence is said."""
+def _warn_once(sentence: str) -> None:
     warnings.warn(sentence, stacklevel=2)
 
 
@@ -174,17 +184,11 @@ def cache_folder() -> Path | None:
     warning says so: its files would be run.
     """
     for home in _homes_of_caches():
-        try:
+        with excused():
             own_folder(home)
             folder = own_folder(home / source_digest(memory=home))
             with tempfile.TemporaryFile(dir=folder):
-                pass
-        except ForeignError as error:
-            warn_once(str(error))
-        except OSError:
-            continue
-        else:
-            return folder
+                return folder
     return None
 
 

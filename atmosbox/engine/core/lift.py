@@ -25,10 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine.core.elementary import expm1, log, log_of_normal
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.parcel import Parcel
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, number
 
 
 @kernel(plain=True)
@@ -238,8 +237,7 @@ class FollowPressure:
             raise RefusedError("the times of a pressure schedule must increase")
         if not (np.isfinite(values).all() and (values > 0.0).all()):
             raise RefusedError("every pressure of a schedule must be finite and above 0")
-        if not (math.isfinite(mean_free_time) and mean_free_time > 0.0):
-            raise RefusedError(f"mean_free_time = {mean_free_time} must be finite and above 0")
+        mean_free_time = number(mean_free_time, "mean_free_time", above=0.0)
         self._log = np.asarray(log_of_normal(values))
         self._relaxation = relaxation * mean_free_time
         self.interval = interval * mean_free_time

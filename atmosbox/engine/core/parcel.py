@@ -10,15 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.account import Array, Snapshot
 from atmosbox.engine.core.adjustment import Adjustable
-from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, speeds, whole
+from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, sides_of, speeds
 from atmosbox.engine.core.random import new_state
-from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError
+from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError, number, whole
 from atmosbox.engine.core.saved_state import SavedState, pack, restore, save, unpack
-from atmosbox.engine.core.state import Tallies
+from atmosbox.engine.core.state import Box, Tallies
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls
 
 if TYPE_CHECKING:
     from atmosbox.engine.start.start import Start
+
+_OVERLAP = 1e-9
 
 __all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
 
@@ -143,8 +145,8 @@ class Parcel(Adjustable):
             raise RefusedError("a box that is periodic along z cannot have gravity: molecules would fall for ever")
         if driver is not None and law[5] != PISTON:
             raise RefusedError("a driver needs a piston: make wall z_high a Piston")
-        if driver is not None and not (math.isfinite(driver.interval) and driver.interval > 0.0):
-            raise RefusedError(f"interval of the driver = {driver.interval} must be finite and above 0")
+        if driver is not None:
+            number(driver.interval, "interval of the driver", above=0.0)
         self._planar = bool(planar)
         self._driver = driver
         self._collisions = bool(collisions)
@@ -182,6 +184,21 @@ class Parcel(Adjustable):
         sides = " x ".join(f"{side:.6g}" for side in self.length)
         name = type(self).__name__
         return f"<{name}: {self.number} molecules in {sides}, t = {self.time:.6g}, {self.contacts} contacts>"
+
+    def _new_box(self, *, moving: bool = False, stall: float = 0.0) -> Box:
+        """Return the box for kernels; with a moving ceiling its height is ``inf``: the position is kept in `Walls`."""
+        x, y, z = map(float, self._sides)
+        a, b, c = (1.0 / side if turn else 0.0 for side, turn in zip((x, y, z), self._periodic, strict=True))
+        exchange = 1.0 / self._collision_number
+        return Box(x, y, math.inf if moving else z, a, b, c, self._gravity, self._planar, exchange, stall)
+
+    def _refuse_overlap(self, depth: float, i: float, j: float) -> None:
+        """Refuse molecules i and j, the deepest overlap at the start, if it is more than rounding makes."""
+        if depth > _OVERLAP:
+            raise RefusedError(
+                f"molecules {i:.0f} and {j:.0f} overlap at the start, by {depth:.3g} of their diameter: "
+                "move them apart or make them smaller"
+            )
 
     # ------------------------------------------------------------------ copies, and states in files
 

@@ -4,11 +4,9 @@ Everything is in reduced units: the caller chooses a length, a mass and an energ
 length * sqrt(mass / energy). ``kT`` is an energy; the engine knows no kelvin.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 MOLECULE = np.dtype(
     [
@@ -253,39 +251,3 @@ def aligned_records(number: int, dtype: np.dtype[Any]) -> Any:
     buffer = np.zeros(number * dtype.itemsize + 64, np.uint8)
     start = -buffer.ctypes.data % 64
     return buffer[start : start + number * dtype.itemsize].view(dtype).view(np.recarray)
-
-
-def new_box(
-    sides: NDArray[np.float64],
-    periodic: tuple[bool, bool, bool],
-    *,
-    moving: bool,
-    gravity: float,
-    planar: bool,
-    exchange: float,
-    stall: float,
-) -> Box:
-    """Return the box as a `Box`; with a moving ceiling its height is ``inf``, as the position is kept in `Walls`.
-
-    Examples
-    --------
-    >>> box = new_box(np.ones(3), (True, False, False), moving=True, gravity=0.0, planar=False, exchange=1.0, stall=1.0)
-    >>> box.length_z, box.inverse_x, box.inverse_y
-    (inf, 1.0, 0.0)
-    """
-    length = [float(side) for side in sides]
-    if moving:
-        length[2] = math.inf
-    inverse = [1.0 / float(side) if turn else 0.0 for side, turn in zip(sides, periodic, strict=True)]
-    return Box(
-        length_x=length[0],
-        length_y=length[1],
-        length_z=length[2],
-        inverse_x=inverse[0],
-        inverse_y=inverse[1],
-        inverse_z=inverse[2],
-        gravity=gravity,
-        planar=planar,
-        exchange=exchange,
-        stall=stall,
-    )

@@ -8,7 +8,7 @@ because fast molecules hit a wall more often, and must leave it as often. The tw
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
-from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, number, shown
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 from atmosbox.engine.core.state import Walls
 
@@ -64,15 +64,6 @@ class Piston:
 Wall = Specular | Periodic | HeatBath | Piston
 
 
-@dataclass(frozen=True)
-class _Laws:
-    """The walls as numbers, one entry for each wall."""
-
-    law: list[int] = field(default_factory=list)
-    accommodation: list[float] = field(default_factory=list)
-    corners: list[list[tuple[float, float]]] = field(default_factory=list)
-
-
 def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     """Return the six walls as arrays, after checking them.
 
@@ -95,47 +86,33 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     """
     if len(walls) != 6:
         raise RefusedError(f"{len(walls)} walls are given: give six, {', '.join(WALL_NAMES)}")
-    laws = _Laws()
+    laws: list[int] = []
+    accommodations: list[float] = []
+    schedules: list[list[tuple[float, float]]] = []
     velocity = 0.0
     # each law is checked and becomes a number, with its accommodation and the corners of its schedule
     for name, wall in zip(WALL_NAMES, walls, strict=True):
-        corners: list[tuple[float, float]] = []
-        accommodation = 0.0
+        corners, accommodation = [(0.0, 1.0)], 0.0
         if isinstance(wall, Specular):
             law = SPECULAR
         elif isinstance(wall, Periodic):
             law = PERIODIC
         elif isinstance(wall, HeatBath):
             law = HEAT_BATH
-            try:
-                accommodation = float(wall.accommodation)
-            except (TypeError, ValueError):
-                accommodation = math.nan
-            if not 0.0 <= accommodation <= 1.0:
-                raise RefusedError(
-                    f"the accommodation of wall {name} = {shown(wall.accommodation)} is not a number from 0 to 1"
-                )
+            accommodation = number(wall.accommodation, f"accommodation of wall {name}", least=0.0, most=1.0)
             corners = as_schedule(wall.kT, f"kT of wall {name}")
         elif isinstance(wall, Piston):
             law = PISTON
             if name != "z_high":
                 raise RefusedError(f"wall {name} cannot be a piston: only the ceiling, z_high, moves")
-            try:
-                velocity = float(wall.velocity)
-            except (TypeError, ValueError):
-                velocity = math.nan
-            if not abs(velocity) <= LARGEST:
-                raise RefusedError(
-                    f"velocity of the piston = {shown(wall.velocity)} is impossible: give a finite number from "
-                    f"{-LARGEST:g} to {LARGEST:g}"
-                )
+            velocity = number(wall.velocity, "velocity of the piston", least=-LARGEST, most=LARGEST)
         else:
             raise RefusedError(f"wall {name} = {shown(wall)} is not a law: give Specular, Periodic, HeatBath or Piston")
-        laws.law.append(law)
-        laws.accommodation.append(accommodation)
-        laws.corners.append(corners or [(0.0, 1.0)])
+        laws.append(law)
+        accommodations.append(accommodation)
+        schedules.append(corners)
     for axis in range(3):
-        pair = laws.law[2 * axis : 2 * axis + 2]
+        pair = laws[2 * axis : 2 * axis + 2]
         if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
             low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
             raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
@@ -146,11 +123,11 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     #   start     0      1       2      3       4           7     8
     #   time      0      0       0      0       0  10  20   0
     #   kT        1      1       1      1       1   2   3   1
-    flat = [corner for corners in laws.corners for corner in corners]
-    start = np.concatenate([[0], np.cumsum([len(corners) for corners in laws.corners])])
+    flat = [corner for corners in schedules for corner in corners]
+    start = np.cumsum([0, *map(len, schedules)])
     return Walls(
-        law=np.array(laws.law, np.int64),
-        accommodation=np.array(laws.accommodation),
+        law=np.array(laws, np.int64),
+        accommodation=np.array(accommodations),
         schedule=start.astype(np.int64),
         schedule_time=np.array([time for time, _ in flat]),
         schedule_kT=np.array([kT for _, kT in flat]),

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar, Unpack
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine.core.kind import classify
-from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
+from atmosbox.engine.core.parcel import Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.dsmc.columns import BLOCK, MoleculeKinds, new_workspace
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
@@ -45,7 +45,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     --------
     A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
-    >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
+    >>> from atmosbox.engine import Mist, Substance
     >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> box = MoistDsmcParcel([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0), seed=1)
     >>> box.advance(50.0)
@@ -57,20 +57,9 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     _wet = True
     _water: Water
 
-    def __init__(
-        self,
-        position: ArrayLike,
-        velocity: ArrayLike,
-        *,
-        liquid: Liquid,
-        dt: float = 0.2,
-        occupancy: float = 10.0,
-        cell: float | None = None,
-        threads: int = 1,
-        **box: Unpack[Arrangement],
-    ) -> None:
+    def __init__(self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid, **box: Any) -> None:
         self._liquid = liquid
-        super().__init__(position, velocity, dt=dt, occupancy=occupancy, cell=cell, threads=threads, **box)
+        super().__init__(position, velocity, **box)
 
     # ------------------------------------------------------------------ the state
 

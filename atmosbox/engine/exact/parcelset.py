@@ -11,13 +11,12 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.lift import FollowPressure
 from atmosbox.engine.core.packing import refuse_solid
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
-from atmosbox.engine.core.refusal import RefusedError, StalledError
-from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records, new_box
+from atmosbox.engine.core.refusal import RefusedError, StalledError, number
+from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.advance import Book, Passed, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
@@ -46,7 +45,6 @@ from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
 _CHUNK = 200_000
 _NO_CLOCKS = np.full(1, math.inf)
-_OVERLAP = 1e-9
 
 
 class Arrays(NamedTuple):
@@ -102,38 +100,46 @@ class ParcelSet(Parcel):
             refuse_solid(self._sides, self._diameter, self._planar)
         self._crowded = False
         self._fill(position, velocity, rotational_energy)
-        self._box = new_box(
-            self._sides,
-            self._periodic,
-            moving=self._walls.law[5] == PISTON,
-            gravity=self._gravity,
-            planar=self._planar,
-            exchange=1.0 / self._collision_number,
-            stall=1e-9 * self._spread,
-        )
+        self._box = self._new_box(moving=self._walls.law[5] == PISTON, stall=1e-9 * self._spread)
         self._epoch_length = math.ldexp(1024.0, math.frexp(self._spread)[1] - 1)
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
         self._cells: Cells
         self._layout: Any
         self._lay_out()
-        depth, i, j = self._overlap(self._gas())
-        if depth > _OVERLAP:
-            raise RefusedError(
-                f"molecules {i} and {j} overlap at the start, by {depth:.3g} of their diameter: "
-                "move them apart or make them smaller"
-            )
+        self._refuse_overlap(*self._overlap(self._gas()))
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules into the engine's arrays."""
         self._kinds, kind, self._size_radius = classify(
             self._mass, self._diameter, self._rotation, np.array(rotational_energy) if self._rotates else None
         )
+        self._write(position, velocity, kind)
+
+    def _write(self, position: Array, velocity: Array, kind: NDArray[np.int64]) -> None:
+        """Make records of molecules."""
         self._molecules = aligned_records(len(position), MOLECULE)
-        for axis, name in enumerate("xyz"):
-            self._molecules[name] = position[:, axis]
-            self._molecules["v" + name] = velocity[:, axis]
-        self._molecules["kind"] = kind
         self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads its fields ten times faster
+        self._fields["kind"] = kind
+        self._move(position, velocity, 0.0)
+
+    def _move(self, position: Array, velocity: Array, now: float) -> None:
+        """Write positions and velocities at a local time."""
+        for axis, name in enumerate("xyz"):
+            self._fields[name], self._fields["v" + name] = position[:, axis], velocity[:, axis]
+        self._fields["clock"] = now
+
+    def _flown(self, m: NDArray[np.void], *, turn: bool = True) -> tuple[Array, Array]:
+        """Return the positions now, brought back into a periodic box if asked, and the velocities of some records."""
+        dt = self._now - m["clock"]
+        position = np.stack([m[axis] + dt * m["v" + axis] for axis in "xyz"], axis=1)
+        velocity = np.stack([m["v" + axis] for axis in "xyz"], axis=1)
+        if self.gravity > 0.0:
+            position[:, 2] -= 0.5 * self.gravity * dt * dt
+            velocity[:, 2] -= self.gravity * dt
+        for axis in range(3):
+            if turn and self._periodic[axis]:
+                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
+        return position, velocity
 
     def memory(self) -> int:
         """Return the memory of molecules, events, cells and calendar, and of the properties of molecules [bytes]."""
@@ -156,17 +162,8 @@ class ParcelSet(Parcel):
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are now; the box does not change."""
         m = self._fields[self._present]
-        dt = self._now - m["clock"]
-        position = np.stack([m["x"] + dt * m["vx"], m["y"] + dt * m["vy"], m["z"] + dt * m["vz"]], axis=1)
-        velocity = np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
-        if self.gravity > 0.0:
-            position[:, 2] -= 0.5 * self.gravity * dt * dt
-            velocity[:, 2] -= self.gravity * dt
-        for axis in range(3):
-            if self._periodic[axis]:
-                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
         spin = np.array(self._kinds.rotational_energy[self._present]) if self._rotates else np.zeros(len(m))
-        return Snapshot(self.time, position, velocity, spin)
+        return Snapshot(self.time, *self._flown(m), spin)
 
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
         """Advance the box to the time ``until`` [time since the start]: see `Parcel.advance`."""
@@ -199,12 +196,10 @@ class ParcelSet(Parcel):
         self._replan(self._gas(), self._now, lowest)
 
     def _field_changes(self, gravity: float) -> None:
-        _, position, velocity, _ = self.snapshot()
-        for axis, name in enumerate("xyz"):
-            place, side = position[:, axis], self._sides[axis]
-            self._fields[name] = place % side if self._periodic[axis] else place
-            self._fields["v" + name] = velocity[:, axis]
-        self._fields["clock"] = self._now
+        position, velocity = self._flown(self._fields)
+        turns = np.array(self._periodic)
+        position[:, turns] %= self._sides[turns]
+        self._move(position, velocity, self._now)
         self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
         self._lay_out()
 

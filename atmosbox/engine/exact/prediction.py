@@ -18,8 +18,6 @@ from atmosbox.engine.exact.cells import overlapped
 from atmosbox.engine.exact.encounter import size_and_radius, slots_of
 from atmosbox.engine.exact.search import CONTACT, search
 
-__all__ = ["CEILING", "CONTACT", "Meeting", "call", "limits", "next_move", "plan", "side", "soonest_in_cell"]
-
 CEILING = 7
 """An event with a moving ceiling. 0 to 5 is a boundary or a wall (2 * axis, plus 1 for the upper side), 6 a contact."""
 

@@ -27,7 +27,6 @@ from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.liquid.drop_shape import (
-    DropRecords,
     about,
     given_by_surface,
     leaving_rates,
@@ -41,8 +40,6 @@ from atmosbox.engine.liquid.drop_shape import (
 from atmosbox.engine.liquid.insertion import Place, enter, has_room, move_to, place_at, take_out, withdraw
 from atmosbox.engine.liquid.moist import ceiling_at, renew
 from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, stays, wait
-
-__all__ = ["DropRecords", "specialise"]
 
 _LEAVES = 1
 

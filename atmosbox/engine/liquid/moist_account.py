@@ -5,9 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.parcel import Array, Parcel
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.walls import POOL, SPECULAR
 from atmosbox.engine.liquid.reservoir import (
     CONDENSED,
@@ -100,7 +99,7 @@ class MoistAccount(Parcel):
         Examples
         --------
         >>> from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-        >>> from atmosbox.engine.liquid.reservoir import Substance
+        >>> from atmosbox.engine import Substance
         >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
         >>> liquid = Pool(water, number=5, kT=1.0)
         >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)

@@ -33,7 +33,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     --------
     A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
-    >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
+    >>> from atmosbox.engine import Mist, Substance
     >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> liquid = Mist(water, number=1, kT=1.0)
     >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)

@@ -34,35 +34,7 @@ import numpy as np
 from atmosbox.engine.core.elementary import circle, exp, lgamma, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gamma_of_shape, uniform
-from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
-
-__all__ = [
-    "AIR_MET",
-    "CONDENSED",
-    "EVAPORATED",
-    "LIQUID",
-    "RAINED",
-    "STICKING",
-    "Drops",
-    "Liquid",
-    "Mist",
-    "Pool",
-    "Reservoir",
-    "Substance",
-    "condense",
-    "cover",
-    "direction",
-    "evaporate",
-    "evaporation_flux",
-    "evaporation_rate",
-    "exchange",
-    "heat_capacity",
-    "leave",
-    "new_reservoir",
-    "rain_out",
-    "stays",
-    "wait",
-]
+from atmosbox.engine.liquid.substance import Liquid
 
 LIQUID, CONDENSED, EVAPORATED, RAINED, AIR_MET = range(5)
 """The counts: molecules in the liquid now; since the start, those that entered, left and rained; other hits."""

@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.inputs import number
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 
 Array = NDArray[np.float64]
