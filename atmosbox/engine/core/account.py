@@ -142,11 +142,8 @@ class Account(ABC):
 
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
-        plain = getattr(wall_kT, "py_func", wall_kT)  # called once a frame: not worth compiling
-        kT = [
-            plain(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)
-        ]
-        return np.array(kT)
+        laws, time = enumerate(self._walls.law), self.time
+        return np.array([wall_kT(self._walls, w, time) if law == HEAT_BATH else math.nan for w, law in laws])
 
     @property
     def work(self) -> float:

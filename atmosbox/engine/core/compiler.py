@@ -86,8 +86,8 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
 
     def _path(self, key: Any) -> Path:
         """Return the path of the file of a version."""
-        code, digest = self._py_func.__code__, hashlib.sha256(repr(key).encode()).hexdigest()[:16]
-        return self._folder / f"{code.co_name}-{code.co_firstlineno}.{digest}.nbc"
+        digest = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        return self._folder / f"{self._py_func.__name__}.{digest}.nbc"
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the machine code for some types, or None if it must be compiled; then announce the compilation."""

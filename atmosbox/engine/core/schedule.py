@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.refusal import LARGEST, RefusedError, number
 
 
@@ -103,3 +104,28 @@ def as_schedule(value: "float | Schedule", name: str) -> list[tuple[float, float
     if any(later < earlier for (earlier, _), (later, _) in itertools.pairwise(corners)):
         raise RefusedError(f"the times of {name} must not decrease: give its points in order of time")
     return corners
+
+
+@kernel(plain=True)
+def interpolate(x, xs, ys):
+    """Return y at x, interpolated linearly between the points (xs, ys) and constant beyond both ends.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(interpolate(1.5, np.array([1.0, 2.0]), np.array([0.0, 4.0])))
+    2.0
+    """
+    if x <= xs[0]:
+        return ys[0]
+    high = xs.size - 1
+    if x >= xs[high]:
+        return ys[high]
+    low = 0
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if xs[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return ys[low] + (ys[high] - ys[low]) * ((x - xs[low]) / (xs[high] - xs[low]))

@@ -17,7 +17,7 @@ from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
 from atmosbox.engine.core.refusal import LARGEST, RefusedError, number, shown
-from atmosbox.engine.core.schedule import Schedule, as_schedule
+from atmosbox.engine.core.schedule import Schedule, as_schedule, interpolate
 from atmosbox.engine.core.state import Walls
 
 SPECULAR, PERIODIC, HEAT_BATH, PISTON, POOL = 0, 1, 2, 3, 4
@@ -136,7 +136,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     )
 
 
-@kernel
+@kernel(plain=True)
 def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     """Return the temperature of a wall [energy] at a time [time] since the start.
 
@@ -144,20 +144,11 @@ def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     --------
     >>> from atmosbox.engine.core.schedule import Ramp
     >>> bath = HeatBath(Ramp(1.0, 3.0, start=0.0, end=10.0))
-    >>> wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0)
+    >>> float(wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0))
     2.0
     """
-    # constant before the first corner and after the last, linear between two corners
-    first = walls.schedule[wall]
-    last = walls.schedule[wall + 1] - 1
-    if last == first or time <= walls.schedule_time[first]:
-        return walls.schedule_kT[first]
-    for k in range(first, last):
-        if time < walls.schedule_time[k + 1]:
-            before = walls.schedule_time[k]
-            share = (time - before) / (walls.schedule_time[k + 1] - before)
-            return walls.schedule_kT[k] + share * (walls.schedule_kT[k + 1] - walls.schedule_kT[k])
-    return walls.schedule_kT[last]
+    first, last = walls.schedule[wall], walls.schedule[wall + 1]
+    return interpolate(time, walls.schedule_time[first:last], walls.schedule_kT[first:last])
 
 
 @kernel

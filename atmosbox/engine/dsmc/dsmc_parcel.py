@@ -131,9 +131,13 @@ class DsmcParcel(MarchingParcel):
 
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
-        kinetic = 0.5 * self._gas.mass * self._number * self._mean_square_speed()
         potential = self.gravity * self._gas.mass * float(np.sum(self._columns.z)) if self.gravity else 0.0
-        return kinetic, float(np.sum(self._columns.spin)) if self._rotates else 0.0, potential
+        spin = float(np.sum(self._columns.spin[: self._number])) if self._rotates else 0.0
+        return self._kinetic(), spin, potential
+
+    def _kinetic(self) -> float:
+        """Return the kinetic energy of all molecules [energy]."""
+        return float(0.5 * self._gas.mass * self._number * self._mean_square_speed())
 
     def memory(self) -> int:
         """Return the memory of molecules and cells, and of sorting the molecules into cells [bytes]."""

@@ -12,7 +12,7 @@ that leaves the gas leaves a hole in the columns, which the last molecule fills.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -28,29 +28,22 @@ from atmosbox.engine.liquid.reservoir import (
     Reservoir,
     condense,
     direction,
-    evaporate,
+    emitted,
     evaporation_rate,
     exchange,
-    leave,
     rain_out,
     stays,
     wait,
 )
 
 
-class Water(NamedTuple):
+class Water(namedtuple("Water", "reservoir calendar hole holes random")):
     """The liquid in a box of many molecules.
 
     ``reservoir``: its molecules and energy; ``calendar``: the times at which molecules waiting on a pool came to it;
     ``hole : (slot,)``: the slots of molecules that left the gas in this step, ``holes[0]`` of them; ``random : (1,)``:
     a state of random numbers.
     """
-
-    reservoir: Reservoir
-    calendar: Any
-    hole: Any
-    holes: Any
-    random: Any
 
 
 def new_water(reservoir: Reservoir, waiting: int) -> Water:
@@ -115,19 +108,9 @@ def touch(p, flow, air, features):
 def emit(p, where, flow, air, features):
     """Move a molecule from the liquid to a place (x, y, z) [length] in the gas, into a free slot."""
     columns, gas, reservoir, state = air.columns, air.gas, air.water.reservoir, air.water.random
-    mass = gas.masses[reservoir.kind]
-    flight, spin = evaporate(reservoir, state)
-    speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = direction(features.pool, state)
-    vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
-    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
-        # only the last molecule can lack the energy of the flow: it leaves as if the air were at rest
-        vz = speed * ez
-        energy = flight + spin
-    leave(reservoir, energy)
+    velocity, spin, _ = emitted(gas.masses[reservoir.kind], flow, features.pool, reservoir, state)
     columns.x[p], columns.y[p], columns.z[p] = where
-    columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
+    columns.vx[p], columns.vy[p], columns.vz[p] = velocity
     if features.rotates:
         columns.spin[p] = spin
     columns.kind[p] = reservoir.kind

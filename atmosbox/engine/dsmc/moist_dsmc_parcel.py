@@ -75,12 +75,6 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         position, velocity = (np.stack([column[order] for column in s[k : k + 3]], axis=1) for k in (0, 3))
         return Snapshot(self.time, position, velocity, s.spin[order] if self._rotates else np.zeros(n))
 
-    def energy(self) -> tuple[float, float, float]:
-        """Return kinetic, rotational and potential energy now [energy]."""
-        n = self._number
-        rotational = float(np.sum(self._columns.spin[:n])) if self._rotates else 0.0
-        return self._kinetic(), rotational, 0.0
-
     def memory(self) -> int:
         """Return the memory of molecules, cells and liquid, and of sorting the molecules into cells [bytes]."""
         calendar = self._water.calendar
@@ -95,10 +89,8 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         self._refuse_what_no_liquid_bears()
         self._pool = isinstance(self._liquid, Pool)
         super()._begin(position, velocity, rotational_energy)
-        substance = self._liquid.substance
-        alike = (self._gas.masses == substance.mass) & (self._gas.rotations == substance.rotation)
-        alike &= 2.0 * self._gas.radius == substance.diameter
-        self._open_reservoir(alike, self._columns.kind)
+        diameter = np.full(len(self._gas.masses), 2.0 * self._gas.radius)
+        self._open_reservoir(self._gas.masses, diameter, self._gas.rotations, self._columns.kind)
         self._water = new_water(self._reservoir, self._room if self._pool else 1)
         self._spare_kind = np.empty_like(self._columns.kind)
 

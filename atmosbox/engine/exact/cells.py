@@ -253,6 +253,45 @@ def slot_at(u, size, axis, last, cells, modes):
 
 
 @kernel
+def slots_at(x, y, z, size, cells, modes):
+    """Return the slots of a centre along x, y and z."""
+    return (
+        slot_at(x, size, 0, cells.last_slot_x, cells, modes),
+        slot_at(y, size, 1, cells.last_slot_y, cells, modes),
+        slot_at(z, size, 2, cells.last_slot_z, cells, modes),
+    )
+
+
+@kernel
+def side(axis, box):
+    """Return the length of the box along an axis [length], and its inverse if the axis is periodic, else 0."""
+    if axis == 0:
+        return box.length_x, box.inverse_x
+    if axis == 1:
+        return box.length_y, box.inverse_y
+    return box.length_z, box.inverse_z
+
+
+@kernel
+def turns_past(u, axis, size, gas):
+    """Return by how many whole lengths of a periodic box a coordinate lies beyond it [length]; 0 along other axes."""
+    length, inverse = side(axis, gas.box)
+    return math.floor((u - gas.cells.boundary[size, axis, 0]) / length) * length if inverse != 0.0 else 0.0
+
+
+@kernel
+def shift(i, axis, by, gas):
+    """Shift molecule i along an axis."""
+    molecule = gas.molecules[i]
+    if axis == 0:
+        molecule.x += by
+    elif axis == 1:
+        molecule.y += by
+    else:
+        molecule.z += by
+
+
+@kernel
 def append(row, start, i):
     """Add molecule i to the cell whose row begins at ``start``."""
     start &= POSITIVE

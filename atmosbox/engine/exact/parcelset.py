@@ -18,10 +18,10 @@ from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError, number
 from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
-from atmosbox.engine.exact.advance import Book, Passed, advancing, dry_loop
+from atmosbox.engine.exact.advance import Book, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, choose_grid
-from atmosbox.engine.exact.exact import specialise
+from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.layout import (
     CHOOSE,
     FOLLOW,
@@ -44,6 +44,7 @@ from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded,
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
 _CHUNK = 200_000
+_WHY = {Status.STALLED: why_stalled, Status.CROWDED: why_crowded, Status.CRUSHED: why_crushed}
 _NO_CLOCKS = np.full(1, math.inf)
 
 
@@ -211,26 +212,23 @@ class ParcelSet(Parcel):
             crushed = self.time + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
             if crushed <= self.time:
                 raise StalledError(why_crushed(self))
-        left, status = _CHUNK, Passed.BUSY
-        while status != Passed.DONE:
+        left, status = _CHUNK, Status.BUSY
+        while status != Status.DONE:
             book = self._book()
             given = self._data(), next(iter(self._ascent()), 0), book, self._layout, min(until, crushed), left
             status, done = self._pass_time(*given)
             self._now = float(book.now[0])
             left -= done
-            if status == Passed.FULL:
+            if status == Status.FULL:
                 self._make_room()
-            elif status == Passed.STALLED:
-                raise StalledError(why_stalled(self))
-            elif status == Passed.CROWDED:
-                raise StalledError(why_crowded(self))
-            elif status == Passed.CRUSHED:
-                position, speed, since = self._walls.piston
-                self._now = float(since + (position - self._lowest_ceiling) / -speed)
-                raise StalledError(why_crushed(self))
+            elif status in _WHY:
+                if status == Status.CRUSHED:
+                    position, speed, since = self._walls.piston
+                    self._now = float(since + (position - self._lowest_ceiling) / -speed)
+                raise StalledError(_WHY[status](self))
             elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                 raise StalledError(why_crushed(self))
-            elif status == Passed.BUSY:
+            elif status == Status.BUSY:
                 left = _CHUNK
                 if watch is not None:
                     watch(self.time)

@@ -96,7 +96,7 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     z = within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
     x, y, z, moved = move_to(i, x, y, z, gas, modes)
     if not moved:
-        return Status.ROW_FULL, i
+        return Status.FULL, i
     reservoir.energy[THERMAL] += 0.5 * mass * share * (ux * ux + uy * uy + uz * uz)
     if not drops.plain:
         # one drop has less surface than two
@@ -196,7 +196,7 @@ def _emit(t, gas, drops, reservoir, modes):
     if found != Place.FREE:
         drops.held[k] += 1
         resize(drops, k, gas.kinds, modes)
-        return Status.ROW_FULL if found == Place.ROW_FULL else Status.DONE, j
+        return Status.FULL if found == Place.ROW_FULL else Status.DONE, j
     mass, heavy = drops.molecule_mass, table[modes.drops + k].mass
     light = mass / (mass + heavy)
     if not drops.plain:

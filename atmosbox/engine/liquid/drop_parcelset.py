@@ -48,13 +48,14 @@ class DropParcelSet(MoistParcelSet):
         held = np.full(number, more // number, np.int64)
         held[: more % number] += 1
         self._append_liquid()
-        waters = more + int(np.sum(self._is_vapour()[: len(position)]))
+        kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
+        self._open_reservoir(kinds.table["mass"], 2.0 * kinds.table["radius"], kinds.table["rotation"], kind)
+        self._reservoir.surface[0] = 0.0
         cubes = [length * length * length for length in liquid.nuclei_radii]
         ball = liquid.molecule_radius * liquid.molecule_radius * liquid.molecule_radius
-        largest = float(cbrt(math.fsum(cubes) + waters * ball))
+        largest = float(cbrt(math.fsum(cubes) + self._vapours * ball))
         radius: Array = np.array([float(cbrt(cube + each * ball)) for cube, each in zip(cubes, held, strict=True)])
         where = self._checked(np.array(liquid.position, float), radius, largest)
-        kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
         self._first_drop = len(kinds.table)
         table = aligned_records(self._first_drop + number, KIND)
         table[: self._first_drop] = kinds.table
@@ -84,16 +85,6 @@ class DropParcelSet(MoistParcelSet):
             tension=float(liquid.surface_tension),
             plain=not (liquid.surface_tension > 0.0 or any(liquid.particles)),
         )
-        alike = self._is_vapour()
-        first = int(kind[np.argmax(alike)]) if alike.any() else -1
-        self._open_reservoir(np.arange(self._first_drop) == first, kind)
-        self._reservoir.surface[0] = 0.0
-
-    def _is_vapour(self) -> NDArray[np.bool_]:
-        """Return which molecules have the properties of the substance of the liquid."""
-        substance = self._liquid.substance
-        alike = (self._mass == substance.mass) & (self._rotation == substance.rotation)
-        return np.asarray(alike & (self._diameter == substance.diameter))
 
     def _checked(self, where: Array, radius: Array, largest: float) -> Array:
         """Return the centres of the drops, or refuse them."""
@@ -135,7 +126,7 @@ class DropParcelSet(MoistParcelSet):
     def surface_energy(self) -> float:
         """Energy of the surface of all drops [energy]."""
         radius = self._kinds.table["radius"][self._first_drop :][self._drops.alive == 1]
-        return 4.0 * math.pi * self._drops.tension * float(np.sum(radius * radius))
+        return float(4.0 * math.pi * self._drops.tension * np.sum(radius * radius))
 
     @property
     def merged(self) -> int:

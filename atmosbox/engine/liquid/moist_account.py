@@ -58,13 +58,18 @@ class MoistAccount(Parcel):
         self._rotates = self._rotates or (bool(more) and substance.rotation > 0.0)
         self._same_size = bool(len(self._diameter)) and np.ptp(self._diameter) == 0.0
 
-    def _open_reservoir(self, alike: NDArray[np.bool_], kind: NDArray[np.integer]) -> None:
+    def _open_reservoir(self, mass: Array, diameter: Array, rotation: Array, kind: NDArray[np.integer]) -> None:
         """Make the reservoir of the liquid.
 
-        ``alike : (kind,)`` tells which kinds have the properties of the substance, ``kind : (molecule,)`` is the kind
-        of each molecule.
+        Parameters
+        ----------
+        mass, diameter, rotation : (kind,)
+            Mass [mass], diameter [length] and rotational degrees of freedom of each kind of molecule.
+        kind : (molecule,)
+            The kind of each molecule.
         """
         liquid, substance = self._liquid, self._liquid.substance
+        alike = (mass == substance.mass) & (diameter == substance.diameter) & (rotation == substance.rotation)
         vapour = int(np.flatnonzero(alike)[0]) if alike.any() else -1
         self._vapours = int(np.sum(kind == vapour))
         cube = float(np.mean(self._diameter * self._diameter * self._diameter)) if len(kind) else 0.0
@@ -75,8 +80,9 @@ class MoistAccount(Parcel):
         elif isinstance(liquid, Pool):
             area = float(sides[0] * sides[1])
         present = len(kind) - int(liquid.number)
-        rotation = float(substance.rotation) if self._rotates else 0.0
-        self._reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)._replace(rotation=rotation)
+        self._reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)
+        if not self._rotates:
+            self._reservoir = self._reservoir._replace(rotation=0.0)
         self._rotations = float(self._rotation.sum())
 
     def set_open_pool(self, share: float) -> None:
@@ -161,14 +167,13 @@ class MoistAccount(Parcel):
     def liquid_kT(self) -> float:
         """Temperature of the liquid [energy], NaN if there is neither liquid nor nuclei."""
         capacity = self._reservoir.molecule_capacity * self.liquid + self._reservoir.nuclei
-        return self.liquid_energy / capacity if capacity > 0.0 else math.nan
+        return float(self.liquid_energy / capacity) if capacity > 0.0 else math.nan
 
     @property
     def condensed_energy(self) -> float:
         """Energy of the liquid, of the binding of its vapour, and of the rain [energy]."""
-        return self._reservoir.binding_energy * self.vapour + float(
-            self._reservoir.energy[THERMAL] + self._reservoir.energy[RAINED_ENERGY]
-        )
+        held = self._reservoir.energy[THERMAL] + self._reservoir.energy[RAINED_ENERGY]
+        return float(self._reservoir.binding_energy * self.vapour + held)
 
     @property
     def present(self) -> NDArray[np.bool_]:
@@ -196,7 +201,7 @@ class MoistAccount(Parcel):
     def degrees_of_freedom(self) -> float:
         """Mean number of translational and rotational degrees of freedom of a molecule of the gas."""
         rotation = self._rotations - self._reservoir.rotation * int(self._reservoir.top[0])
-        return 3.0 + rotation / max(self.number, 1)
+        return float(3.0 + rotation / max(self.number, 1))
 
     @property
     def emitted_energy(self) -> tuple[Array, NDArray[np.int64]]:

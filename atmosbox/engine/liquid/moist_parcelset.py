@@ -78,7 +78,6 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules of the gas into the arrays, then those of the liquid, which are not in the box."""
-        substance = self._liquid.substance
         present, more = len(position), int(self._liquid.number)
         self._append_liquid()
         nowhere = np.zeros((more, 3))
@@ -88,9 +87,8 @@ class MoistParcelSet(MoistAccount, ParcelSet):
             np.append(rotational_energy, np.zeros(more)),
         )
         self._fields["clock"][present:] = np.inf
-        alike = (self._kinds.table["mass"] == substance.mass) & (self._kinds.table["rotation"] == substance.rotation)
-        alike &= self._kinds.table["radius"] == 0.5 * substance.diameter
-        self._open_reservoir(alike, self._fields["kind"])
+        table = self._kinds.table
+        self._open_reservoir(table["mass"], 2.0 * table["radius"], table["rotation"], self._fields["kind"])
 
     @property
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]

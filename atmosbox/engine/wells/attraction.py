@@ -1,8 +1,8 @@
 """The additional parameters of a box of attracting molecules: its wells, and a bath of random velocities."""
 
 import math
+from collections import namedtuple
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,7 +60,7 @@ class RandomBath:
     rate: float
 
 
-class Wells(NamedTuple):
+class Wells(namedtuple("Wells", "core edge depth distance number count stress")):
     """The wells in the form that the kernels take.
 
     ``core``, ``edge`` and ``depth : (kind, kind)``: see `square_well.Well`; ``distance : (kind, kind)`` is the radius
@@ -69,29 +69,14 @@ class Wells(NamedTuple):
     r_a dp_a over all events of pairs since the start [energy].
     """
 
-    core: Any
-    edge: Any
-    depth: Any
-    distance: Any
-    number: Any
-    count: Any
-    stress: Any
 
-
-class Bath(NamedTuple):
+class Bath(namedtuple("Bath", "clock rate schedule schedule_time schedule_kT heat")):
     """The bath in the form that the kernels take.
 
     ``clock : (1,)``: the time of the next draw [time, local]; ``rate``: draws per molecule and time [1/time];
     ``schedule``, ``schedule_time``, ``schedule_kT``: its temperature as that of a wall, see `state.Walls`;
     ``heat : (1,)``: the energy that it has given [energy].
     """
-
-    clock: Any
-    rate: float
-    schedule: Any
-    schedule_time: Any
-    schedule_kT: Any
-    heat: Any
 
 
 def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
