@@ -16,18 +16,6 @@ class Adjustable(Account):
     be changed.
     """
 
-    _now: float
-
-    @property
-    @abstractmethod
-    def ceiling(self) -> float:
-        """Height of the ceiling now [length]."""
-
-    @property
-    @abstractmethod
-    def piston_velocity(self) -> float:
-        """Velocity of the ceiling [length/time]."""
-
     @abstractmethod
     def _piston_turned(self) -> None:
         """Update what depends on the velocity of the piston, which has just changed."""

@@ -15,6 +15,14 @@ Array = NDArray[np.float64]
 _PIECE = 1 << 20  # number of molecules whose squares are summed at once
 
 
+def numbers(values: ArrayLike, name: str, **kind: Any) -> Array:
+    """Return an array of numbers of this ``kind`` of `numpy.array`, or refuse."""
+    try:
+        return np.array(values, np.float64, **kind)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} holds something that is not a number: give numbers alone") from None
+
+
 def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
     """Return three finite numbers per molecule as (molecule, axis), or refuse.
 
@@ -25,10 +33,7 @@ def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
     >>> matrix([[1, 2, 3]], "position")
     array([[1., 2., 3.]])
     """
-    try:
-        array = np.array(values, np.float64, order="F") if copy else np.asarray(values, np.float64)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
+    array = numbers(values, name, order="F" if copy else "K", copy=copy or None)
     if array.size == 0:
         array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
@@ -59,10 +64,7 @@ def column(
     >>> column(1.0, 3, "mass", above=0.0)
     array([1., 1., 1.])
     """
-    try:
-        array = np.array(values, np.float64)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} holds something that is not a number") from None
+    array = numbers(values, name)
     if array.ndim > 1 or (array.ndim == 1 and array.size != n):
         raise RefusedError(f"{name} has shape {array.shape}: give one number, or one for each of {n} molecules")
     bad = ~np.isfinite(array)

@@ -226,7 +226,7 @@ class FollowPressure:
             density=parcel.open_density,
             open_height=parcel.ceiling - (float(parcel.diameter.mean()) if parcel.number else 0.0),
         )
-        return float(_follow(gauges, self.law()))
+        return float(ceiling_velocity(gauges, self.law()))
 
     def law(self) -> Lift:
         """Return the law in the form that kernels take which move the piston themselves."""
@@ -243,7 +243,7 @@ def _log_pressure(time, lift):
     return interpolate(moment, lift.time, lift.log_pressure)
 
 
-@kernel
+@kernel(entry=True)
 def ceiling_velocity(at, lift):
     """Return the velocity [length/time] of the ceiling for the next interval; the module's docstring has the formula.
 
@@ -266,12 +266,6 @@ def ceiling_velocity(at, lift):
     fall = wanted - _log_pressure(at.time + lift.interval, lift)
     fall += lift.interval / lift.relaxation * (log(ideal * factor) - wanted)
     return at.open_height * expm1(fall / stiffness(factor, at.freedom)) / lift.interval
-
-
-@kernel(entry=True)
-def _follow(at, lift):
-    """Return the velocity of the ceiling, for calls from Python."""
-    return ceiling_velocity(at, lift)
 
 
 @kernel

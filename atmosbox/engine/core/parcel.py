@@ -171,7 +171,7 @@ class Parcel(Adjustable):
             progress=np.array([-math.inf, 0.0]),
         )
         self._now = 0.0
-        self._asked: float | None = None
+        self._asked = None
         self._turns = np.zeros(1, np.int64)  # number of the driver's calls since the start
         start = [v, x]
         del v, x  # so that an engine may free them once it has its own arrays
@@ -296,24 +296,6 @@ class Parcel(Adjustable):
         return np.ones(self.number, np.bool_)
 
     @property
-    def time(self) -> float:
-        """Time since the start [time]."""
-        return float(self._walls.epoch[0]) + self._now if self._asked is None else self._asked
-
-    @property
-    def length(self) -> Array:
-        """The three sides of the box now [length]."""
-        sides = self._sides.copy()
-        sides[2] = self.ceiling
-        return sides
-
-    @property
-    def ceiling(self) -> float:
-        """Height of the ceiling now [length]."""
-        position, speed, since = self._walls.piston
-        return float(position + speed * (self._now - since))
-
-    @property
     def volume(self) -> float:
         """Volume of the box now [length^3]; of a plane gas, its area [length^2]."""
         sides = self.length
@@ -338,11 +320,6 @@ class Parcel(Adjustable):
         return float(self.number * each if alike else np.sum(each))
 
     @property
-    def piston_velocity(self) -> float:
-        """Upward velocity of the ceiling [length/time]."""
-        return float(self._walls.piston[1])
-
-    @property
     def periodic(self) -> tuple[bool, bool, bool]:
         """Whether each axis (x, y, z) is periodic."""
         return self._periodic
@@ -361,16 +338,6 @@ class Parcel(Adjustable):
     def planar(self) -> bool:
         """Whether this is a plane gas."""
         return self._planar
-
-    @property
-    def mass(self) -> Array:
-        """Mass of each molecule [mass]."""
-        return self._mass
-
-    @property
-    def diameter(self) -> Array:
-        """Diameter of each molecule [length]."""
-        return self._diameter
 
     @property
     def rotation(self) -> Array:

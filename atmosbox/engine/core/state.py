@@ -66,13 +66,13 @@ class Modes(NamedTuple):
     whether the rows of cells hold copies of trajectories (`rows`).
     """
 
-    contacts: bool
-    gravity: bool
-    rotation: bool
-    mixed: bool
-    spanning: bool
-    periodic: bool
-    piston: bool
+    contacts: bool = False
+    gravity: bool = False
+    rotation: bool = False
+    mixed: bool = False
+    spanning: bool = False
+    periodic: bool = False
+    piston: bool = False
     phases: bool = False
     pool: bool = False
     drops: int = 0

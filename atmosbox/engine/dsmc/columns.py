@@ -78,7 +78,8 @@ class Step(namedtuple("Step", "start length ceiling top key")):
 class Air(namedtuple("Air", "columns grid gas box walls workspace tries water")):
     """The molecules in their box, in the form that the kernels take; see the types of its parts.
 
-    ``gas`` is a `MoleculeKinds`, ``tries`` are `pairing.Tries`; ``water`` is the liquid (`moist_columns.Water`), or None where there is none or it is not needed.
+    ``gas`` is a `MoleculeKinds`, ``tries`` are `pairing.Tries`; ``water`` is the liquid (`moist_columns.Water`), or
+    None where there is none or it is not needed.
     """
 
 

@@ -152,13 +152,7 @@ class ParcelSet(Parcel):
 
     def arrays(self) -> Arrays:
         """Return what the kernels of this box work on; they change as the box advances, and may be replaced."""
-        return Arrays(
-            gas=self._gas(),
-            modes=self._modes,
-            ascent=next(iter(self._ascent()), None),
-            book=self._book(),
-            layout=self._layout,
-        )
+        return Arrays(self._gas(), self._modes, self._ascent(), self._book(), self._layout)
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are now; the box does not change."""
@@ -214,9 +208,8 @@ class ParcelSet(Parcel):
                 raise StalledError(why_crushed(self))
         left, status = _CHUNK, Status.BUSY
         while status != Status.DONE:
-            book = self._book()
-            given = self._data(), next(iter(self._ascent()), 0), book, self._layout, min(until, crushed), left
-            status, done = self._pass_time(*given)
+            data, ascent, book = self._data(), self._ascent() or 0, self._book()
+            status, done = self._pass_time(data, ascent, book, self._layout, min(until, crushed), left)
             self._now = float(book.now[0])
             left -= done
             if status == Status.FULL:
@@ -240,15 +233,15 @@ class ParcelSet(Parcel):
         """Whether compiled code moves the piston: it knows one driver, and needs molecules of one size."""
         return type(self._driver) is FollowPressure and self._same_size and not self._first_drop
 
-    def _ascent(self) -> tuple[Ascent] | tuple[()]:
-        """Return the last argument of the kernels that move the piston; nothing if none does."""
+    def _ascent(self) -> Ascent | None:
+        """Return the data of a piston that compiled code moves, or None."""
         if not self._ascends:
-            return ()
+            return None
         assert isinstance(self._driver, FollowPressure)
         diameter = float(self._diameter[0])
         energy = self._start_energy, self._gravity_work
         heights = float(self._layout.filled[0]), float(self._lowest_ceiling)
-        return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
+        return Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter)
 
     def _next_turn(self) -> float:
         """Return when Python sets the velocity of the piston next [time], ``inf`` if it never does."""

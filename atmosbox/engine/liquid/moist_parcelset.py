@@ -56,14 +56,10 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         fastest = float(np.sqrt(np.max(np.sum(velocity * velocity, axis=1), initial=0.0)))
         baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
         warm = math.sqrt(8.0 * max(baths, default=0.0) / self._liquid.substance.mass)
-        self._draw(max(fastest, warm, 2.0 * abs(self.piston_velocity)))
-
-    def _draw(self, speed: float) -> None:
-        """Draw the times of the liquid again, for molecules that may be as fast as ``speed`` [length/time]."""
-        self._draws(self._gas(), self._book(), speed)
+        self._draws(self._gas(), self._book(), max(fastest, warm, 2.0 * abs(self.piston_velocity)))
 
     def _reservoir_changes(self) -> None:
-        self._draw(float(self._reservoir.bound[0]))
+        self._draws(self._gas(), self._book(), float(self._reservoir.bound[0]))
 
     def _piston_turned(self) -> None:
         super()._piston_turned()

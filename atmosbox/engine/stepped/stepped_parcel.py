@@ -119,7 +119,6 @@ class SteppedParcel(MarchingParcel):
             gravity=self._gravity > 0.0,
             rotation=self._rotates,
             mixed=mixed,
-            spanning=False,
             periodic=any(self._periodic),
             piston=bool(self._walls.law[5] == PISTON),
         )

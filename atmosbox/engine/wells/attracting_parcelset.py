@@ -131,15 +131,8 @@ class AttractingParcelSet(ParcelSet):
                     f"each other up to a distance of {reach:.6g} on a periodic axis: make it "
                     f"{2.0 * _TIGHT * reach:.6g} or more"
                 )
-        self._modes = Modes(
-            contacts=True,
-            gravity=self.gravity > 0.0,
-            rotation=False,
-            mixed=len(self._kinds.table) > 1,
-            spanning=False,
-            periodic=any(self._periodic),
-            piston=False,
-        )
+        mixed, periodic = len(self._kinds.table) > 1, any(self._periodic)
+        self._modes = Modes(contacts=True, gravity=self.gravity > 0.0, mixed=mixed, periodic=periodic)
         self._find_kernels()
         self._events = aligned_records(n, EVENT)
         self._calendar = new_calendar(n)

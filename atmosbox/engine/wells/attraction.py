@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.inputs import numbers
 from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 
@@ -95,10 +96,7 @@ def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
     limits = {"range": (1.0, _WIDEST), "depth": (0.0, math.inf)}
     tables = []
     for name, (least, most) in limits.items():
-        try:
-            table = np.array(getattr(well, name), np.float64)
-        except (TypeError, ValueError):
-            raise RefusedError(f"{name} of the well is not a number: give a number, or a table of species") from None
+        table = numbers(getattr(well, name), f"{name} of the well")
         if table.ndim == 0:
             table = np.full((species, species), float(table))
         if table.ndim != 2 or table.shape[0] != table.shape[1] or len(table) < species:
