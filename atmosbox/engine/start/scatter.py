@@ -42,7 +42,10 @@ def _drawn(i, spheres, scale_height, state):
 
 @kernel(entry=True)
 def scatter(spheres, bins, scale_height, state):
-    """Place molecules where they overlap none, twice; return False as soon as one finds no place at first."""
+    """Place molecules at random where they overlap none, twice; return False as soon as one finds no place at first.
+
+    ``scale_height`` is 0 in a gas that is spread evenly; ``state : (1,)`` is the state of the random numbers.
+    """
     x, order = spheres.x, spheres.order
     bins.head[:] = -1
     for k in range(2 * order.size):
