@@ -119,8 +119,7 @@ class Adjustable(Account):
             raise RefusedError(f"the temperature of wall {name} changes with time: give one temperature")
         if new.law[wall] == HEAT_BATH:
             self._bath_changes(float(temperatures[0]))
-        for each in range(self._walls.schedule[wall], self._walls.schedule[wall + 1]):
-            self._walls.schedule_kT[each] = temperatures[0]
+        self._walls.schedule_kT[self._walls.schedule[wall] : self._walls.schedule[wall + 1]] = temperatures[0]
         self._walls.law[wall] = new.law[wall]
         self._walls.accommodation[wall] = new.accommodation[wall]
 

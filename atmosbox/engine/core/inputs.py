@@ -45,37 +45,25 @@ def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
 
 
 def column(
-    values: ArrayLike,
-    n: int,
-    name: str,
-    *,
-    above: float | None = None,
-    least: float | None = None,
-    small: float = 0.0,
-    shared: bool = False,
+    values: ArrayLike, n: int, name: str, *, positive: bool = False, small: float = 0.0, shared: bool = False
 ) -> Array:
-    """Return one number per molecule within its limits as (molecule,), or refuse.
+    """Return one number per molecule as (molecule,), 0 or above, or else ``positive``; or refuse.
 
     No number may lie between 0 and ``small``. If ``shared``, one number given for all molecules is stored once, and the
     result cannot be changed.
 
     Examples
     --------
-    >>> column(1.0, 3, "mass", above=0.0)
+    >>> column(1.0, 3, "mass", positive=True)
     array([1., 1., 1.])
     """
     array = numbers(values, name)
     if array.ndim > 1 or (array.ndim == 1 and array.size != n):
         raise RefusedError(f"{name} has shape {array.shape}: give one number, or one for each of {n} molecules")
-    bad = ~np.isfinite(array)
-    if above is not None:
-        bad |= ~(array > above)
-    if least is not None:
-        bad |= ~(array >= least)
-    bad |= ~(array <= LARGEST) | ((array > 0.0) & (array < small))
+    bad = ~((array > 0.0 if positive else array >= 0.0) & (array <= LARGEST)) | ((array > 0.0) & (array < small))
     if bad.any():
         value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
-        limit = f"above {above:g}" if above is not None else f"{least:g} or above"
+        limit = "above 0" if positive else "0 or above"
         limit += f" and at most {LARGEST:g}" + (f", but not between 0 and {small:g}" if small else "")
         raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
     column = np.broadcast_to(array, (n,))

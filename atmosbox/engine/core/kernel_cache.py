@@ -22,6 +22,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 _DIGEST = re.compile(rb"[0-9a-f]{16}")
 
 
@@ -117,7 +118,7 @@ def own_content(path: Path) -> bytes:
         If it is a link, or belongs to another user, or other users may write to it.
     """
     try:
-        with open(path, "rb", opener=_without_links) as file:
+        with open(path, "rb", opener=lambda name, flags: os.open(name, flags | _NO_LINK)) as file:
             _refuse_foreign(path, os.fstat(file.fileno()))
             return file.read()
     except OSError as error:
@@ -158,10 +159,6 @@ def excused() -> Iterator[None]:
 @functools.cache
 def _warn_once(sentence: str) -> None:
     warnings.warn(sentence, stacklevel=2)
-
-
-def _without_links(name: str, flags: int) -> int:
-    return os.open(name, flags | getattr(os, "O_NOFOLLOW", 0))
 
 
 def _refuse_foreign(path: Path, about: os.stat_result) -> None:

@@ -122,13 +122,13 @@ class Parcel(Adjustable):
             raise RefusedError(f"{len(x)} positions and {len(v)} velocities: give one velocity for each position")
         speeds(v)
         n = len(x)
-        self._mass = column(mass, n, "mass", above=0.0, small=SMALLEST, shared=self._frugal)
-        self._diameter = column(diameter, n, "diameter", least=0.0, small=SMALLEST, shared=self._frugal)
-        self._rotation = column(rotation, n, "rotation", least=0.0, shared=self._frugal)
+        self._mass = column(mass, n, "mass", positive=True, small=SMALLEST, shared=self._frugal)
+        self._diameter = column(diameter, n, "diameter", small=SMALLEST, shared=self._frugal)
+        self._rotation = column(rotation, n, "rotation", shared=self._frugal)
         if not np.isin(self._rotation, (0.0, 2.0, 3.0)).all():
             raise RefusedError("the rotational degrees of freedom of a molecule are 0, 2 or 3")
         spin = 0.0 if rotational_energy is None else rotational_energy
-        spin = column(spin, n, "rotational_energy", least=0.0, shared=self._frugal)
+        spin = column(spin, n, "rotational_energy", shared=self._frugal)
         self._sides = sides_of(length)
         self._gravity = number(gravity, "gravity", least=0.0, most=LARGEST)
         self._collision_number = number(collision_number, "collision_number", least=1.0, infinite=True)

@@ -24,7 +24,7 @@ long: first the number of its molecules, then their indices::
 """
 
 import math
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,16 +41,8 @@ ROW = 32
 """Number of words of a row at first, where rows hold no copies."""
 
 
-class Grid(NamedTuple):
+class Grid(namedtuple("Grid", "number boundary first span last_slot spanning images")):
     """Cells without copies, and slots along the three axes: see `state.Cells`."""
-
-    number: tuple[int, int, int]
-    boundary: NDArray[np.float64]
-    first: NDArray[np.int32]
-    span: NDArray[np.int32]
-    last_slot: tuple[int, int, int]
-    spanning: bool
-    images: bool
 
 
 def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
