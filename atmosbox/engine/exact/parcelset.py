@@ -18,26 +18,11 @@ from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError, number
 from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
+from atmosbox.engine.exact import layout
 from atmosbox.engine.exact.advance import Book, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, choose_grid
 from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.layout import (
-    CHOOSE,
-    FOLLOW,
-    LENGTHEN,
-    NUMBER,
-    PLACE,
-    Column,
-    Layout,
-    as_laid_out,
-    choose_cells,
-    new_cells,
-    new_rows,
-    stride_of,
-    write_cells,
-    write_column,
-)
 from atmosbox.engine.exact.row_cells import MARGIN, TALLER, widths_for_rows
 from atmosbox.engine.exact.rows import FEWEST
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
@@ -264,7 +249,7 @@ class ParcelSet(Parcel):
 
     def _gas(self) -> Gas:
         """Return all data of the kernels, with the present cells."""
-        made: Gas = as_laid_out(self._data(), self._layout, self._modes)
+        made: Gas = layout.as_laid_out(self._data(), self._layout, self._modes)
         return made
 
     @property
@@ -292,12 +277,13 @@ class ParcelSet(Parcel):
     def _make_room(self) -> None:
         """Make memory for longer rows; where that does not help, choose other cells, or else rows without copies."""
         due = self._layout.due[0]
-        if due in (CHOOSE, FOLLOW):
-            self._crowded |= bool(due == FOLLOW)
+        if due in (layout.CHOOSE, layout.FOLLOW):
+            self._crowded |= bool(due == layout.FOLLOW)
             self._choose()
             return
-        cells, old = math.prod(self._layout.shape[NUMBER : NUMBER + 3].tolist()), self._cells.row
-        row = new_rows(cells * int(stride_of(self._layout, self._modes)) * (2 if due == LENGTHEN else 1))
+        cells, old = math.prod(self._layout.shape[layout.NUMBER : layout.NUMBER + 3].tolist()), self._cells.row
+        words = cells * int(layout.stride_of(self._layout, self._modes))
+        row = layout.new_rows(2 * words if due == layout.LENGTHEN else words)
         row[: old.size] = old
         copies = self._cells.copies._replace(value=row.view(np.float32), occupied=row.view(np.int64))
         self._cells = self._cells._replace(row=row, copies=copies)
@@ -309,9 +295,9 @@ class ParcelSet(Parcel):
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
         contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
         shape, filled = np.array([FEWEST, 0, 0, 0, 0, 0, 0]), np.array([self.ceiling])
-        self._layout = Layout(shape, np.array([PLACE]), filled, np.zeros((3, 1)), self._size_radius, None)
+        self._layout = layout.Layout(shape, np.array([layout.PLACE]), filled, np.zeros((3, 1)), self._size_radius, None)
         rows = contacts and not self._crowded
-        rows = rows and bool(choose_cells(self.ceiling, n, self._box, moving, self._layout))
+        rows = rows and bool(layout.choose_cells(self.ceiling, n, self._box, moving, self._layout))
         grid = None
         if not rows:
             grid = choose_grid(
@@ -344,25 +330,25 @@ class ParcelSet(Parcel):
         self._find_kernels()
         self._events, self._calendar = aligned_records(n, EVENT), new_calendar(n)
         radius = 0.5 * float(self.diameter.mean()) if self.diameter.size else 0.0
-        most = int(shape[NUMBER : NUMBER + 3].max()) if rows else 1
-        self._cells = new_cells(self._events, len(self._size_radius), 0, most, radius, self._epoch_length)
+        most = int(shape[layout.NUMBER : layout.NUMBER + 3].max()) if rows else 1
+        self._cells = layout.new_cells(self._events, len(self._size_radius), 0, most, radius, self._epoch_length)
         if grid is not None:
             self._cells = self._cells._replace(boundary=grid.boundary, first=grid.first, span=grid.span)
             return
         self._layout = self._layout._replace(edge=np.zeros((3, most + 1)), column=self._column(kT, bath, weight))
-        write_cells(self._gas(), self._layout, self._modes)
+        layout.write_cells(self._gas(), self._layout, self._modes)
         if self._layout.column.wanted:
-            write_column(kT, self._gas(), self._layout, self._modes)
+            layout.write_column(kT, self._gas(), self._layout, self._modes)
 
-    def _column(self, kT: float, bath: float, weight: float) -> Column:
+    def _column(self, kT: float, bath: float, weight: float) -> layout.Column:
         """Return the data from which the layers of a column are chosen: none are wanted without gravity."""
-        n, layers = len(self._fields), int(self._layout.shape[NUMBER + 2])
+        n, layers = len(self._fields), int(self._layout.shape[layout.NUMBER + 2])
         wanted = layers if layers > 1 and weight > 0.0 and max(kT, bath) > 0.0 else 0
         width = widths_for_rows(
             self._sides[0], self._sides[1], self.ceiling, float(self._size_radius.min()), n, self._planar
         )
         thinnest = max(2.002 * float(self._size_radius.max()) * MARGIN, 0.05 * width[2])
-        return Column(weight, bath, wanted, thinnest, np.zeros(layers, np.int64), np.zeros(layers + 1))
+        return layout.Column(weight, bath, wanted, thinnest, np.zeros(layers, np.int64), np.zeros(layers + 1))
 
     def _find_kernels(self) -> None:
         _, _, self._replan, self._overlap, _ = specialise(self._modes)

@@ -8,18 +8,7 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.parcel import Array, Parcel
 from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.walls import POOL, SPECULAR
-from atmosbox.engine.liquid.reservoir import (
-    CONDENSED,
-    EVAPORATED,
-    LIQUID,
-    RAINED,
-    RAINED_ENERGY,
-    STICKING,
-    THERMAL,
-    Reservoir,
-    cover,
-    new_reservoir,
-)
+from atmosbox.engine.liquid import reservoir
 from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
 
@@ -31,7 +20,7 @@ class MoistAccount(Parcel):
     """
 
     _liquid: Liquid
-    _reservoir: Reservoir
+    _reservoir: reservoir.Reservoir
     _vapours: int
     _rotations: float
 
@@ -80,7 +69,7 @@ class MoistAccount(Parcel):
         elif isinstance(liquid, Pool):
             area = float(sides[0] * sides[1])
         present = len(kind) - int(liquid.number)
-        self._reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)
+        self._reservoir = reservoir.new_reservoir(liquid, area, len(kind), present, vapour, cube)
         if not self._rotates:
             self._reservoir = self._reservoir._replace(rotation=0.0)
         self._rotations = float(self._rotation.sum())
@@ -117,7 +106,7 @@ class MoistAccount(Parcel):
         """
         if not isinstance(self._liquid, Pool):
             raise RefusedError("the liquid of this box is not a pool, and only a pool can be covered: make it a Pool")
-        cover(self._reservoir, number(share, "open share of the pool", least=0.0, most=1.0))
+        reservoir.cover(self._reservoir, number(share, "open share of the pool", least=0.0, most=1.0))
         self._reservoir_changes()
 
     def _reservoir_changes(self) -> None:
@@ -131,12 +120,12 @@ class MoistAccount(Parcel):
     @property
     def sticking(self) -> float:
         """Fraction of the vapour molecules that hit the liquid now and stay; less if a part of a pool is covered."""
-        return float(self._reservoir.rates[STICKING])
+        return float(self._reservoir.rates[reservoir.STICKING])
 
     @property
     def liquid(self) -> int:
         """Number of molecules in the liquid."""
-        return int(self._reservoir.count[LIQUID])
+        return int(self._reservoir.count[reservoir.LIQUID])
 
     @property
     def vapour(self) -> int:
@@ -146,22 +135,22 @@ class MoistAccount(Parcel):
     @property
     def condensed(self) -> int:
         """Number of molecules that have entered the liquid since the start."""
-        return int(self._reservoir.count[CONDENSED])
+        return int(self._reservoir.count[reservoir.CONDENSED])
 
     @property
     def evaporated(self) -> int:
         """Number of molecules that have left the liquid for the vapour since the start."""
-        return int(self._reservoir.count[EVAPORATED])
+        return int(self._reservoir.count[reservoir.EVAPORATED])
 
     @property
     def rained(self) -> int:
         """Number of molecules that have left the box as rain since the start."""
-        return int(self._reservoir.count[RAINED])
+        return int(self._reservoir.count[reservoir.RAINED])
 
     @property
     def liquid_energy(self) -> float:
         """Thermal energy of the liquid [energy]."""
-        return float(self._reservoir.energy[THERMAL])
+        return float(self._reservoir.energy[reservoir.THERMAL])
 
     @property
     def liquid_kT(self) -> float:
@@ -172,7 +161,7 @@ class MoistAccount(Parcel):
     @property
     def condensed_energy(self) -> float:
         """Energy of the liquid, of the binding of its vapour, and of the rain [energy]."""
-        held = self._reservoir.energy[THERMAL] + self._reservoir.energy[RAINED_ENERGY]
+        held = self._reservoir.energy[reservoir.THERMAL] + self._reservoir.energy[reservoir.RAINED_ENERGY]
         return float(self._reservoir.binding_energy * self.vapour + held)
 
     @property
