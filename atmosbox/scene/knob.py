@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.engine.core.lift import interpolate
+from atmosbox.engine.core.schedule import interpolate
 from atmosbox.scene.conversion import from_si, to_si
 from atmosbox.scene.units import rounded
 

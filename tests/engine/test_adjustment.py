@@ -121,9 +121,9 @@ def test_a_change_that_a_box_cannot_have_is_refused_in_a_sentence_and_changes_no
     endless = box(ParcelSet, number=2, walls=(Periodic(),) * 6)
     mist, pool = damp(Mist(WATER, number=2, kT=1.0)), damp(Pool(WATER, number=2, kT=1.0))
     cases = [
-        (column.set_wall_kT, (0.0,), "not positive"),
+        (column.set_wall_kT, (0.0,), "above 0"),
         (column.set_wall_kT, (1.0, 5), "z_high is not a heat bath"),
-        (column.set_gravity, (-1.0,), "from 0 to "),
+        (column.set_gravity, (-1.0,), "at least 0 and at most "),
         (under_piston.set_wall_kT, (2.0,), "make one a HeatBath"),
         (endless.set_gravity, (1.0,), "fall for ever"),
         (mist.set_gravity, (1.0,), "no gravity"),

@@ -32,7 +32,7 @@ from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 from tests.engine.boxes import SMOOTH, TURNING, Pulse
 
 S, P, NAN, INF = Specular(), Periodic(), math.nan, math.inf
-WAY_OUT = re.compile(r"\b(give|make|choose) |\bmust be (finite and )?above 0$|is not a number from 0 to 1$")
+WAY_OUT = re.compile(r"\b(give|make|choose) ")
 CRYSTAL = 0.70711 * np.array([[0, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0]])
 FACTS = {"mass": 0.62, "diameter": 0.5, "binding_energy": 3.0, "heat_capacity": 9.0, "volatility": 1.0, "rotation": 3.0}
 

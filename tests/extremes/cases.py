@@ -329,7 +329,7 @@ FAMILIES = {
     "steps": (
         Case("steps of σ / 4", steps(0.25), stepped=-8 / 3 * 0.25**2, dsmc=-0.027, later="exact"),
         Case("steps of 10 σ", steps(10.0), stepped=TOO_LONG, dsmc=-0.023),
-        Case("steps of 40 boxes", steps(1000.0), stepped=TOO_LONG, dsmc="a finite number from 0 to 10"),
+        Case("steps of 40 boxes", steps(1000.0), stepped=TOO_LONG, dsmc="a finite number, above 0 and at most 10"),
     ),
     "how many": (
         Case("no molecules", comes_to([at(np.zeros((0, 3)), walls=BATHS)], 10.0, [0.0]), later="exact"),

@@ -82,6 +82,11 @@ class Account(ABC):
     """The tallies of a box of molecules as properties with names and units; `Parcel` is one."""
 
     _tallies: Tallies
+    _sides: Array
+    _mass: Array
+    _diameter: Array
+    _now: float
+    _asked: float | None
     _walls: Walls
     _gravity: float
     _planar: bool
@@ -91,24 +96,37 @@ class Account(ABC):
     _gravity_work: float = 0.0
 
     @property
-    @abstractmethod
     def time(self) -> float:
         """Time since the start [time]."""
+        return float(self._walls.epoch[0]) + self._now if self._asked is None else self._asked
 
     @property
-    @abstractmethod
     def length(self) -> Array:
         """The three sides of the box now [length]."""
+        sides = self._sides.copy()
+        sides[2] = self.ceiling
+        return sides
 
     @property
-    @abstractmethod
+    def ceiling(self) -> float:
+        """Height of the ceiling now [length]."""
+        position, speed, since = self._walls.piston
+        return float(position + speed * (self._now - since))
+
+    @property
+    def piston_velocity(self) -> float:
+        """Upward velocity of the ceiling [length/time]."""
+        return float(self._walls.piston[1])
+
+    @property
     def mass(self) -> Array:
         """Mass of each molecule [mass]."""
+        return self._mass
 
     @property
-    @abstractmethod
     def diameter(self) -> Array:
         """Diameter of each molecule [length]."""
+        return self._diameter
 
     @abstractmethod
     def snapshot(self) -> Snapshot:
@@ -142,11 +160,8 @@ class Account(ABC):
 
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
-        plain = getattr(wall_kT, "py_func", wall_kT)  # called once a frame: not worth compiling
-        kT = [
-            plain(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)
-        ]
-        return np.array(kT)
+        laws, time = enumerate(self._walls.law), self.time
+        return np.array([wall_kT(self._walls, w, time) if law == HEAT_BATH else math.nan for w, law in laws])
 
     @property
     def work(self) -> float:

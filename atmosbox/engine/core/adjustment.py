@@ -4,8 +4,7 @@ import math
 from abc import abstractmethod
 
 from atmosbox.engine.core.account import Account
-from atmosbox.engine.core.inputs import number
-from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, number, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, SPECULAR, WALL_NAMES, HeatBath, Specular, new_walls
 
 
@@ -16,18 +15,6 @@ class Adjustable(Account):
     gives to the molecules is entered in the ledger. A box that is not changed gives the same bytes as one that cannot
     be changed.
     """
-
-    _now: float
-
-    @property
-    @abstractmethod
-    def ceiling(self) -> float:
-        """Height of the ceiling now [length]."""
-
-    @property
-    @abstractmethod
-    def piston_velocity(self) -> float:
-        """Velocity of the ceiling [length/time]."""
 
     @abstractmethod
     def _piston_turned(self) -> None:
@@ -82,9 +69,7 @@ class Adjustable(Account):
         >>> box.wall_kT().tolist()
         [1.0, 1.0, 1.0, 1.0, 2.0, 1.0]
         """
-        kT = number(kT, "kT of a wall", most=LARGEST)
-        if not kT > 0.0:
-            raise RefusedError(f"kT of a wall = {kT} is not positive: give a number above 0")
+        kT = number(kT, "kT of a wall", above=0.0, most=LARGEST)
         baths = [w for w, law in enumerate(self._walls.law) if law == HEAT_BATH]
         if wall is not None and wall not in baths:
             name = WALL_NAMES[wall] if 0 <= wall < len(WALL_NAMES) else wall
@@ -134,8 +119,7 @@ class Adjustable(Account):
             raise RefusedError(f"the temperature of wall {name} changes with time: give one temperature")
         if new.law[wall] == HEAT_BATH:
             self._bath_changes(float(temperatures[0]))
-        for each in range(self._walls.schedule[wall], self._walls.schedule[wall + 1]):
-            self._walls.schedule_kT[each] = temperatures[0]
+        self._walls.schedule_kT[self._walls.schedule[wall] : self._walls.schedule[wall + 1]] = temperatures[0]
         self._walls.law[wall] = new.law[wall]
         self._walls.accommodation[wall] = new.accommodation[wall]
 

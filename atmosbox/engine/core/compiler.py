@@ -33,7 +33,7 @@ import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import llvmlite.ir as ir
 import numba
@@ -49,15 +49,7 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.core.untyped_passes import RewriteSemanticConstants
 from numba.extending import NativeValue, intrinsic, lower_cast, models, register_model, typeof_impl, unbox
 
-from atmosbox.engine.core.kernel_cache import (
-    ForeignError,
-    announce,
-    cache_folder,
-    keep,
-    own_content,
-    own_folder,
-    warn_once,
-)
+from atmosbox.engine.core.kernel_cache import announce, cache_folder, excused, keep, own_content, own_folder
 from atmosbox.engine.core.state import Modes
 
 if sys.platform != "win32":
@@ -70,136 +62,81 @@ prange = numba.prange
 # same to the last bit on all processors.
 _SHARED: dict[str, Any] = {"error_model": "numpy"}
 _CACHE = cache_folder()
-_LONGEST = 120.0  # seconds
+_TRIES, _PAUSE = 2400, 0.05  # together the longest compilation [seconds]
 _CHECK = hashlib.sha256().digest_size  # bytes
 
 
-class _Locator(caching._CacheLocator):  # type: ignore[misc]
-    """Tells numba the folder of a kernel; its name holds the digest of all sources, so no file needs a time stamp."""
+class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
+    """The machine code of a kernel on disk: a file with a checksum for each version of it.
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._folder = str(own_folder(_CACHE / function.__module__))  # type: ignore[operator]
-
-    @classmethod
-    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> "_Locator":
-        return cls(py_func)
-
-    def get_cache_path(self) -> str:
-        return self._folder
-
-    def get_source_stamp(self) -> str:
-        return ""
-
-    def get_disambiguator(self) -> str:
-        return ""
-
-
-class _KeptKernel(caching.CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes: ClassVar = [_Locator]
-
-
-class _Files:
-    """The files of a kernel: one for each version of it, with a checksum. They replace numba's files and index.
-
-    numba would run what any user has written to the folder, and machine code in which the disk has changed a bit.
+    numba would run what any user has written to the folder, and machine code in which the disk has changed a bit. Here
+    one process compiles what is not there while the others wait. The name of the folder holds the digest of all
+    sources, so no file needs a time stamp.
     """
 
-    def __init__(self, folder: Path, name: str) -> None:
-        self._folder, self._name = folder, name
-
-    def path(self, key: Any, suffix: str = "nbc") -> Path:
-        """Return the path of the file of a version."""
-        return self._folder / f"{self._name}.{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.{suffix}"
-
-    def load(self, key: Any) -> Any:
-        """Return the machine code of a version, or None if there is none that is whole."""
-        content = own_content(self.path(key))
-        if hashlib.sha256(content[_CHECK:]).digest() != content[:_CHECK]:
-            return None
-        known, data = pickle.loads(content[_CHECK:])
-        return data if known == key else None
-
-    def save(self, key: Any, data: Any) -> None:
-        """Keep the machine code of a version."""
-        content = dumps((key, data))
-        keep(self.path(key), hashlib.sha256(content).digest() + content)
-
-
-class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
-    """The machine code of a kernel on disk; one process compiles what is not there while the others wait."""
-
-    _impl_class = _KeptKernel
-
     def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
-        self._cache_file = _Files(Path(self.cache_path), self._impl.filename_base)
-        self._locks: list[Any] = []
+        self._py_func = function
+        self._folder = own_folder(_CACHE / function.__module__)  # type: ignore[operator]
+        self._lock: Any = None
+
+    @property
+    def cache_path(self) -> str:
+        """The folder, for numba's statistics."""
+        return str(self._folder)
+
+    def _path(self, key: Any) -> Path:
+        """Return the path of the file of a version."""
+        digest = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        return self._folder / f"{self._py_func.__name__}.{digest}.nbc"
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the machine code for some types, or None if it must be compiled; then announce the compilation."""
-        found = self._kept(sig, target_context)
-        if found is None and self._wait_for_others(sig, target_context):
-            found = self._kept(sig, target_context)
+        target_context.refresh()
+        key = self._index_key(sig, target_context.codegen())
+        found = self._kept(key, target_context)
+        if found is None and self._waits(self._path(key).with_suffix(".lock")):
+            found = self._kept(key, target_context)
         if found is None:
             announce(self._py_func.__qualname__, True)
+        else:
+            self._let_others_go_on()
         return found
 
-    def _kept(self, sig: Any, target_context: Any) -> Any:
+    def _kept(self, key: Any, target_context: Any) -> Any:
         """Return what is on disk, or None if it is missing, damaged or not ours: a damaged file may raise any error."""
-        try:
-            return super().load_overload(sig, target_context)
-        except ForeignError as error:
-            warn_once(str(error))
-        except Exception:
-            pass
+        with excused():
+            content = own_content(self._path(key))
+            if hashlib.sha256(content[_CHECK:]).digest() == content[:_CHECK]:
+                known, data = pickle.loads(content[_CHECK:])
+                return compiler.CompileResult._rebuild(target_context, *data) if known == key else None
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the machine code for some types, if it can be written."""
-        with contextlib.suppress(OSError):
-            super().save_overload(sig, data)
+        key = self._index_key(sig, data.codegen)
+        content = dumps((key, data._reduce()))
+        with excused():
+            keep(self._path(key), hashlib.sha256(content).digest() + content)
+        self._let_others_go_on()
         announce(self._py_func.__qualname__, False)
 
-    def _wait_for_others(self, sig: Any, target_context: Any) -> bool:
-        """Take the right to compile; return whether another process had it until now.
+    def _waits(self, path: Path) -> bool:
+        """Take the right to compile; return whether another process had it until now. It ends with a process."""
+        self._let_others_go_on()
+        if sys.platform != "win32":
+            with excused():
+                self._lock = path.open("wb")
+                for tries in range(_TRIES):
+                    with contextlib.suppress(BlockingIOError):
+                        fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                        return tries > 0
+                    time.sleep(_PAUSE)
+        return False
 
-        A process that ends gives up its right. The wait is no longer than the longest compilation.
-        """
-        if sys.platform == "win32":
-            return False
-        try:
-            lock = self._cache_file.path(self._index_key(sig, target_context.codegen()), "lock").open("wb")
-        except OSError:
-            return False
-        self._locks.append(lock)
-        waited = False
-        until = time.monotonic() + _LONGEST
-        while time.monotonic() < until:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                waited = True
-                time.sleep(0.05)
-            else:
-                break
-        return waited
-
-    def let_others_go_on(self) -> None:
-        """Give up the right to compile, so that waiting processes go on."""
-        for lock in self._locks:
-            lock.close()
-        self._locks.clear()
-
-
-def _kept_kernels(function: Callable[..., Any]) -> _KeptKernels | None:
-    """Return the machine code of a kernel on disk; None if there is no folder for it that is ours."""
-    try:
-        return _KeptKernels(function) if _CACHE is not None else None
-    except ForeignError as error:
-        warn_once(str(error))
-    except OSError:
-        pass
-    return None
+    def _let_others_go_on(self) -> None:
+        """Give up the right to compile."""
+        if self._lock:
+            self._lock.close()
 
 
 # ---------------------------------------------------------------- flags that are known before a kernel is compiled
@@ -327,23 +264,10 @@ def compiled(
     if not entry:
         return _of_plain_types(numba.njit(forceinline=True, no_cpython_wrapper=True, **options)(function))
     made = numba.njit(nogil=True, **options)(function)
-    kernels = _kept_kernels(function) if kept else None
-    if kernels:
-        made._cache = kernels
-        made.compile = _then_others_go_on(made.compile, kernels)
+    if kept and _CACHE is not None:
+        with excused():
+            made._cache = _KeptKernels(function)
     return made
-
-
-def _then_others_go_on(compile: Callable[[Any], Any], kernels: _KeptKernels) -> Callable[[Any], Any]:
-    """Have a kernel compiled, and then give up the right to compile, also where it cannot be compiled."""
-
-    def once(signature: Any) -> Any:
-        try:
-            return compile(signature)
-        finally:
-            kernels.let_others_go_on()
-
-    return once
 
 
 def _of_plain_types(made: Any) -> Any:

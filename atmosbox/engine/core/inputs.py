@@ -15,6 +15,14 @@ Array = NDArray[np.float64]
 _PIECE = 1 << 20  # number of molecules whose squares are summed at once
 
 
+def numbers(values: ArrayLike, name: str, **kind: Any) -> Array:
+    """Return an array of numbers of this ``kind`` of `numpy.array`, or refuse."""
+    try:
+        return np.array(values, np.float64, **kind)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} holds something that is not a number: give numbers alone") from None
+
+
 def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
     """Return three finite numbers per molecule as (molecule, axis), or refuse.
 
@@ -25,10 +33,7 @@ def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
     >>> matrix([[1, 2, 3]], "position")
     array([[1., 2., 3.]])
     """
-    try:
-        array = np.array(values, np.float64, order="F") if copy else np.asarray(values, np.float64)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
+    array = numbers(values, name, order="F" if copy else "K", copy=copy or None)
     if array.size == 0:
         array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
@@ -40,79 +45,29 @@ def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
 
 
 def column(
-    values: ArrayLike,
-    n: int,
-    name: str,
-    *,
-    above: float | None = None,
-    least: float | None = None,
-    small: float = 0.0,
-    shared: bool = False,
+    values: ArrayLike, n: int, name: str, *, positive: bool = False, small: float = 0.0, shared: bool = False
 ) -> Array:
-    """Return one number per molecule within its limits as (molecule,), or refuse.
+    """Return one number per molecule as (molecule,), 0 or above, or else ``positive``; or refuse.
 
     No number may lie between 0 and ``small``. If ``shared``, one number given for all molecules is stored once, and the
     result cannot be changed.
 
     Examples
     --------
-    >>> column(1.0, 3, "mass", above=0.0)
+    >>> column(1.0, 3, "mass", positive=True)
     array([1., 1., 1.])
     """
-    try:
-        array = np.array(values, np.float64)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} holds something that is not a number") from None
+    array = numbers(values, name)
     if array.ndim > 1 or (array.ndim == 1 and array.size != n):
         raise RefusedError(f"{name} has shape {array.shape}: give one number, or one for each of {n} molecules")
-    bad = ~np.isfinite(array)
-    if above is not None:
-        bad |= ~(array > above)
-    if least is not None:
-        bad |= ~(array >= least)
-    bad |= ~(array <= LARGEST) | ((array > 0.0) & (array < small))
+    bad = ~((array > 0.0 if positive else array >= 0.0) & (array <= LARGEST)) | ((array > 0.0) & (array < small))
     if bad.any():
         value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
-        limit = f"above {above:g}" if above is not None else f"{least:g} or above"
+        limit = "above 0" if positive else "0 or above"
         limit += f" and at most {LARGEST:g}" + (f", but not between 0 and {small:g}" if small else "")
         raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
     column = np.broadcast_to(array, (n,))
     return column if shared else column.copy()
-
-
-def number(value: Any, name: str, *, least: float = -math.inf, most: float = math.inf, infinite: bool = False) -> float:
-    """Return a number within its limits, or refuse.
-
-    Examples
-    --------
-    >>> number(9.8, "gravity", least=0.0)
-    9.8
-    """
-    try:
-        found = float(value)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} = {shown(value)} is not a number: give a number") from None
-    if math.isnan(found) or (math.isinf(found) and not infinite) or not least <= found <= most:
-        limits = f"from {least:g}" + (f" to {most:g}" if math.isfinite(most) else " up")
-        raise RefusedError(
-            f"{name} = {shown(value)} is impossible: give a finite number"
-            + (f" {limits}" if math.isfinite(least) else "")
-        )
-    return found
-
-
-def whole(value: Any, name: str, *, least: int) -> int:
-    """Return a whole number that is not below ``least``, or refuse.
-
-    Examples
-    --------
-    >>> whole(25, "layers", least=1)
-    25
-    """
-    found = number(value, name, least=least)
-    if found != math.floor(found):
-        raise RefusedError(f"{name} = {shown(value)} is not a whole number: give one from {least} up")
-    return int(value)
 
 
 def sides_of(length: Any) -> Array:

@@ -22,6 +22,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 _DIGEST = re.compile(rb"[0-9a-f]{16}")
 
 
@@ -117,7 +118,7 @@ def own_content(path: Path) -> bytes:
         If it is a link, or belongs to another user, or other users may write to it.
     """
     try:
-        with open(path, "rb", opener=_without_links) as file:
+        with open(path, "rb", opener=lambda name, flags: os.open(name, flags | _NO_LINK)) as file:
             _refuse_foreign(path, os.fstat(file.fileno()))
             return file.read()
     except OSError as error:
@@ -144,14 +145,20 @@ class ForeignError(PermissionError):
         super().__init__(f"{path} is not used for compiled code, because {reason}: {remedy}.")
 
 
+@contextlib.contextmanager
+def excused() -> Iterator[None]:
+    """Go on without what cannot be read or written, and warn once of what is not ours."""
+    try:
+        yield
+    except ForeignError as error:
+        _warn_once(str(error))
+    except Exception:
+        pass
+
+
 @functools.cache
-def warn_once(sentence: str) -> None:
-    """Warn, the first time that this sentence is said."""
+def _warn_once(sentence: str) -> None:
     warnings.warn(sentence, stacklevel=2)
-
-
-def _without_links(name: str, flags: int) -> int:
-    return os.open(name, flags | getattr(os, "O_NOFOLLOW", 0))
 
 
 def _refuse_foreign(path: Path, about: os.stat_result) -> None:
@@ -174,17 +181,11 @@ def cache_folder() -> Path | None:
     warning says so: its files would be run.
     """
     for home in _homes_of_caches():
-        try:
+        with excused():
             own_folder(home)
             folder = own_folder(home / source_digest(memory=home))
             with tempfile.TemporaryFile(dir=folder):
-                pass
-        except ForeignError as error:
-            warn_once(str(error))
-        except OSError:
-            continue
-        else:
-            return folder
+                return folder
     return None
 
 

@@ -18,41 +18,17 @@ finite-rate error remains: ln p is too high by what the finite speed of the parc
 """
 
 import math
+from collections import namedtuple
 from collections.abc import Sequence
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine.core.elementary import expm1, log, log_of_normal
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.parcel import Parcel
-from atmosbox.engine.core.refusal import RefusedError
-
-
-@kernel(plain=True)
-def interpolate(x, xs, ys):
-    """Return y at x, interpolated linearly between the points (xs, ys) and constant beyond both ends.
-
-    Examples
-    --------
-    >>> float(interpolate(1.5, np.array([1.0, 2.0]), np.array([0.0, 4.0])))
-    2.0
-    """
-    if x <= xs[0]:
-        return ys[0]
-    high = xs.size - 1
-    if x >= xs[high]:
-        return ys[high]
-    low = 0
-    while high - low > 1:
-        middle = (low + high) >> 1
-        if xs[middle] <= x:
-            low = middle
-        else:
-            high = middle
-    return ys[low] + (ys[high] - ys[low]) * ((x - xs[low]) / (xs[high] - xs[low]))
+from atmosbox.engine.core.refusal import RefusedError, number
+from atmosbox.engine.core.schedule import interpolate
 
 
 class Course:
@@ -141,7 +117,7 @@ class Course:
 _EXCESS, _VIRIAL = range(2)
 
 
-class Lift(NamedTuple):
+class Lift(namedtuple("Lift", "time log_pressure course_time course_moment measured interval relaxation memory")):
     """A pressure to follow, in the form that the kernels take.
 
     ``time``, ``log_pressure : (corner,)``: the schedule [time; logarithm of energy/length^3]; ``course_time``,
@@ -151,32 +127,14 @@ class Lift(NamedTuple):
     pressure, ``memory``: the averaging time of (Z - 1) / n [time].
     """
 
-    time: Any
-    log_pressure: Any
-    course_time: Any
-    course_moment: Any
-    measured: Any
-    interval: float
-    relaxation: float
-    memory: float
 
-
-class Gauges(NamedTuple):
+class Gauges(namedtuple("Gauges", "time number freedom dimensions energy virial density open_height")):
     """The state of the gas at one time, as the law of a lift needs it.
 
     The time [time]; the number of molecules, the degrees of freedom of each and the number of dimensions; their energy
     [energy] and the virial of their contacts since the start [energy]; the density in the volume that centres can
     reach [1/length^3] and the height of that volume [length].
     """
-
-    time: float
-    number: int
-    freedom: float
-    dimensions: float
-    energy: float
-    virial: float
-    density: float
-    open_height: float
 
 
 class FollowPressure:
@@ -238,8 +196,7 @@ class FollowPressure:
             raise RefusedError("the times of a pressure schedule must increase")
         if not (np.isfinite(values).all() and (values > 0.0).all()):
             raise RefusedError("every pressure of a schedule must be finite and above 0")
-        if not (math.isfinite(mean_free_time) and mean_free_time > 0.0):
-            raise RefusedError(f"mean_free_time = {mean_free_time} must be finite and above 0")
+        mean_free_time = number(mean_free_time, "mean_free_time", above=0.0)
         self._log = np.asarray(log_of_normal(values))
         self._relaxation = relaxation * mean_free_time
         self.interval = interval * mean_free_time
@@ -269,7 +226,7 @@ class FollowPressure:
             density=parcel.open_density,
             open_height=parcel.ceiling - (float(parcel.diameter.mean()) if parcel.number else 0.0),
         )
-        return float(_follow(gauges, self.law()))
+        return float(ceiling_velocity(gauges, self.law()))
 
     def law(self) -> Lift:
         """Return the law in the form that kernels take which move the piston themselves."""
@@ -286,7 +243,7 @@ def _log_pressure(time, lift):
     return interpolate(moment, lift.time, lift.log_pressure)
 
 
-@kernel
+@kernel(entry=True)
 def ceiling_velocity(at, lift):
     """Return the velocity [length/time] of the ceiling for the next interval; the module's docstring has the formula.
 
@@ -309,12 +266,6 @@ def ceiling_velocity(at, lift):
     fall = wanted - _log_pressure(at.time + lift.interval, lift)
     fall += lift.interval / lift.relaxation * (log(ideal * factor) - wanted)
     return at.open_height * expm1(fall / stiffness(factor, at.freedom)) / lift.interval
-
-
-@kernel(entry=True)
-def _follow(at, lift):
-    """Return the velocity of the ceiling, for calls from Python."""
-    return ceiling_velocity(at, lift)
 
 
 @kernel

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.parcel import Array, Parcel
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.walls import HEAT_BATH
 
 _WORK = 400_000
@@ -46,9 +45,9 @@ class MarchingParcel(Parcel):
         RefusedError
             If the run has begun, or the interval is not finite and above 0.
         """
-        interval = number(interval, "interval")
-        if self._step or not interval > 0.0:
-            raise RefusedError("a time step is chosen before the first step, for an interval above 0")
+        interval = number(interval, "interval", above=0.0)
+        if self._step:
+            raise RefusedError("a time step is chosen before the first step")
         if self._effort():
             self._time_step = interval / math.ceil(interval / self._time_step * (1.0 - _SLACK))
             self._renew()

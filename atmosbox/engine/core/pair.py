@@ -78,10 +78,8 @@ def soonest_image(rx, ry, rz, ux, uy, uz, distance, box):
     --------
     The nearest image is one above, and is missed; the one below is three away:
 
-    >>> from atmosbox.engine.core.state import new_box
-    >>> box = new_box(
-    ...     np.full(3, 4.0), (True,) * 3, moving=False, gravity=0.0, planar=False, exchange=1.0, stall=1.0
-    ... )
+    >>> from atmosbox.engine.core.state import Box
+    >>> box = Box(4.0, 4.0, 4.0, 0.25, 0.25, 0.25, gravity=0.0, planar=False, exchange=1.0, stall=1.0)
     >>> soonest_image(0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 1.0, box)
     1.0
     """

@@ -10,15 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.account import Array, Snapshot
 from atmosbox.engine.core.adjustment import Adjustable
-from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, speeds, whole
+from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, sides_of, speeds
 from atmosbox.engine.core.random import new_state
-from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError
+from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError, number, whole
 from atmosbox.engine.core.saved_state import SavedState, pack, restore, save, unpack
-from atmosbox.engine.core.state import Tallies
+from atmosbox.engine.core.state import Box, Tallies
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls
 
 if TYPE_CHECKING:
     from atmosbox.engine.start.start import Start
+
+_OVERLAP = 1e-9
 
 __all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
 
@@ -120,13 +122,13 @@ class Parcel(Adjustable):
             raise RefusedError(f"{len(x)} positions and {len(v)} velocities: give one velocity for each position")
         speeds(v)
         n = len(x)
-        self._mass = column(mass, n, "mass", above=0.0, small=SMALLEST, shared=self._frugal)
-        self._diameter = column(diameter, n, "diameter", least=0.0, small=SMALLEST, shared=self._frugal)
-        self._rotation = column(rotation, n, "rotation", least=0.0, shared=self._frugal)
+        self._mass = column(mass, n, "mass", positive=True, small=SMALLEST, shared=self._frugal)
+        self._diameter = column(diameter, n, "diameter", small=SMALLEST, shared=self._frugal)
+        self._rotation = column(rotation, n, "rotation", shared=self._frugal)
         if not np.isin(self._rotation, (0.0, 2.0, 3.0)).all():
             raise RefusedError("the rotational degrees of freedom of a molecule are 0, 2 or 3")
         spin = 0.0 if rotational_energy is None else rotational_energy
-        spin = column(spin, n, "rotational_energy", least=0.0, shared=self._frugal)
+        spin = column(spin, n, "rotational_energy", shared=self._frugal)
         self._sides = sides_of(length)
         self._gravity = number(gravity, "gravity", least=0.0, most=LARGEST)
         self._collision_number = number(collision_number, "collision_number", least=1.0, infinite=True)
@@ -143,8 +145,8 @@ class Parcel(Adjustable):
             raise RefusedError("a box that is periodic along z cannot have gravity: molecules would fall for ever")
         if driver is not None and law[5] != PISTON:
             raise RefusedError("a driver needs a piston: make wall z_high a Piston")
-        if driver is not None and not (math.isfinite(driver.interval) and driver.interval > 0.0):
-            raise RefusedError(f"interval of the driver = {driver.interval} must be finite and above 0")
+        if driver is not None:
+            number(driver.interval, "interval of the driver", above=0.0)
         self._planar = bool(planar)
         self._driver = driver
         self._collisions = bool(collisions)
@@ -169,7 +171,7 @@ class Parcel(Adjustable):
             progress=np.array([-math.inf, 0.0]),
         )
         self._now = 0.0
-        self._asked: float | None = None
+        self._asked = None
         self._turns = np.zeros(1, np.int64)  # number of the driver's calls since the start
         start = [v, x]
         del v, x  # so that an engine may free them once it has its own arrays
@@ -182,6 +184,21 @@ class Parcel(Adjustable):
         sides = " x ".join(f"{side:.6g}" for side in self.length)
         name = type(self).__name__
         return f"<{name}: {self.number} molecules in {sides}, t = {self.time:.6g}, {self.contacts} contacts>"
+
+    def _new_box(self, *, moving: bool = False, stall: float = 0.0) -> Box:
+        """Return the box for kernels; with a moving ceiling its height is ``inf``: the position is kept in `Walls`."""
+        x, y, z = map(float, self._sides)
+        a, b, c = (1.0 / side if turn else 0.0 for side, turn in zip((x, y, z), self._periodic, strict=True))
+        exchange = 1.0 / self._collision_number
+        return Box(x, y, math.inf if moving else z, a, b, c, self._gravity, self._planar, exchange, stall)
+
+    def _refuse_overlap(self, depth: float, i: float, j: float) -> None:
+        """Refuse molecules i and j, the deepest overlap at the start, if it is more than rounding makes."""
+        if depth > _OVERLAP:
+            raise RefusedError(
+                f"molecules {i:.0f} and {j:.0f} overlap at the start, by {depth:.3g} of their diameter: "
+                "move them apart or make them smaller"
+            )
 
     # ------------------------------------------------------------------ copies, and states in files
 
@@ -279,24 +296,6 @@ class Parcel(Adjustable):
         return np.ones(self.number, np.bool_)
 
     @property
-    def time(self) -> float:
-        """Time since the start [time]."""
-        return float(self._walls.epoch[0]) + self._now if self._asked is None else self._asked
-
-    @property
-    def length(self) -> Array:
-        """The three sides of the box now [length]."""
-        sides = self._sides.copy()
-        sides[2] = self.ceiling
-        return sides
-
-    @property
-    def ceiling(self) -> float:
-        """Height of the ceiling now [length]."""
-        position, speed, since = self._walls.piston
-        return float(position + speed * (self._now - since))
-
-    @property
     def volume(self) -> float:
         """Volume of the box now [length^3]; of a plane gas, its area [length^2]."""
         sides = self.length
@@ -321,11 +320,6 @@ class Parcel(Adjustable):
         return float(self.number * each if alike else np.sum(each))
 
     @property
-    def piston_velocity(self) -> float:
-        """Upward velocity of the ceiling [length/time]."""
-        return float(self._walls.piston[1])
-
-    @property
     def periodic(self) -> tuple[bool, bool, bool]:
         """Whether each axis (x, y, z) is periodic."""
         return self._periodic
@@ -344,16 +338,6 @@ class Parcel(Adjustable):
     def planar(self) -> bool:
         """Whether this is a plane gas."""
         return self._planar
-
-    @property
-    def mass(self) -> Array:
-        """Mass of each molecule [mass]."""
-        return self._mass
-
-    @property
-    def diameter(self) -> Array:
-        """Diameter of each molecule [length]."""
-        return self._diameter
 
     @property
     def rotation(self) -> Array:

@@ -1,4 +1,4 @@
-"""What the engine refuses or cannot do. Each subclasses a builtin and carries one sentence.
+"""What the engine refuses or cannot do, and the checks of a number. Each error carries one sentence.
 
 ::
 
@@ -11,6 +11,7 @@
      +-- CoarseStepWarning   a time step so long that collisions come late
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -49,3 +50,44 @@ def shown(value: Any) -> str:
         inside = ", ".join(map(shown, value))
         return f"({inside})" if type(value) is tuple else f"[{inside}]"
     return repr(value)
+
+
+def number(
+    value: Any,
+    name: str,
+    *,
+    least: float = -math.inf,
+    above: float = -math.inf,
+    most: float = math.inf,
+    infinite: bool = False,
+) -> float:
+    """Return a number within its limits, or refuse.
+
+    Examples
+    --------
+    >>> number(9.8, "gravity", least=0.0)
+    9.8
+    """
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} = {shown(value)} is not a number: give a number") from None
+    if math.isnan(found) or (math.isinf(found) and not infinite) or not (least <= found <= most and found > above):
+        limits = {"above": above, "at least": least, "at most": most}
+        words = " and ".join(f"{word} {limit:g}" for word, limit in limits.items() if math.isfinite(limit))
+        raise RefusedError(f"{name} = {shown(value)} is impossible: give a finite number{words and ', '}{words}")
+    return found
+
+
+def whole(value: Any, name: str, *, least: int) -> int:
+    """Return a whole number that is not below ``least``, or refuse.
+
+    Examples
+    --------
+    >>> whole(25, "layers", least=1)
+    25
+    """
+    found = number(value, name, least=least)
+    if found != math.floor(found):
+        raise RefusedError(f"{name} = {shown(value)} is not a whole number: give one from {least} up")
+    return int(value)

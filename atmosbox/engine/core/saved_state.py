@@ -17,6 +17,7 @@ import copyreg
 import ctypes
 import json
 import math
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,17 +41,8 @@ class SavedState(NamedTuple):
     memory: Pieces
 
 
-class _View(NamedTuple):
+class _View(namedtuple("_View", "piece line at dtype shape strides writable records")):
     """The place of an array: its piece of memory, the offset there, and its other properties in numpy."""
-
-    piece: str
-    line: int
-    at: int
-    dtype: Any
-    shape: list[int]
-    strides: list[int]
-    writable: bool
-    records: bool
 
 
 class _Memory:

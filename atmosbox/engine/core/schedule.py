@@ -1,12 +1,12 @@
 """Schedules: numbers that may change with time, such as the temperature of a heat bath."""
 
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, number
 
 
 class Schedule(Protocol):
@@ -82,39 +82,50 @@ class Steps:
         return corners
 
 
-def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) -> list[tuple[float, float]]:
+def as_schedule(value: "float | Schedule", name: str) -> list[tuple[float, float]]:
     """Return the corners of a number or a schedule, checked.
 
     Raises
     ------
     RefusedError
-        If a corner is not finite, its value is not positive although it must be, or times decrease.
+        If a corner is not finite, its value is not above 0, or times decrease.
 
     Examples
     --------
     >>> as_schedule(1.5, "kT of a wall")
     [(0.0, 1.5)]
     """
-    if isinstance(value, Constant | Ramp | Steps):
-        corners = value.points()
-    elif hasattr(value, "points"):
-        corners = list(value.points())
-    else:
-        try:
-            corners = Constant(float(value)).points()
-        except (TypeError, ValueError):
-            raise RefusedError(
-                f"{name} = {shown(value)} is not a number: give a number, Constant, Ramp or Steps"
-            ) from None
+    corners = list(value.points()) if hasattr(value, "points") else [(0.0, number(value, name))]
     if not corners:
         raise RefusedError(f"{name} = {value!r} has no points: give at least one (time, value)")
-    for time, number in corners:
-        if not (math.isfinite(time) and abs(number) <= LARGEST):
-            raise RefusedError(
-                f"{name} = {number} at time {time} is impossible: give a finite number of at most {LARGEST:g}"
-            )
-        if positive and not number > 0.0:
-            raise RefusedError(f"{name} = {number} is not positive: give a number above 0")
+    for time, level in corners:
+        number(time, f"a time of {name}")
+        number(level, name, above=0.0, most=LARGEST)
     if any(later < earlier for (earlier, _), (later, _) in itertools.pairwise(corners)):
         raise RefusedError(f"the times of {name} must not decrease: give its points in order of time")
     return corners
+
+
+@kernel(plain=True)
+def interpolate(x, xs, ys):
+    """Return y at x, interpolated linearly between the points (xs, ys) and constant beyond both ends.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(interpolate(1.5, np.array([1.0, 2.0]), np.array([0.0, 4.0])))
+    2.0
+    """
+    if x <= xs[0]:
+        return ys[0]
+    high = xs.size - 1
+    if x >= xs[high]:
+        return ys[high]
+    low = 0
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if xs[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return ys[low] + (ys[high] - ys[low]) * ((x - xs[low]) / (xs[high] - xs[low]))

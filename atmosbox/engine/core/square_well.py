@@ -22,7 +22,7 @@ Alder, B. J., Wainwright, T. E. (1959), doi:10.1063/1.1730376 (the method, for t
 """
 
 import math
-from typing import NamedTuple
+from collections import namedtuple
 
 from atmosbox.engine.core.jit import kernel
 
@@ -30,12 +30,8 @@ CORE, CAPTURE, RELEASE, BOUNCE = range(4)
 """The four events of a pair; a release that is too slow becomes a bounce when it is resolved."""
 
 
-class Well(NamedTuple):
+class Well(namedtuple("Well", "core edge depth")):
     """The law of a pair: squares of sigma and of lambda sigma [length^2], equal for hard spheres; depth [energy]."""
-
-    core: float
-    edge: float
-    depth: float
 
 
 @kernel

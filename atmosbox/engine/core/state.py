@@ -4,11 +4,10 @@ Everything is in reduced units: the caller chooses a length, a mass and an energ
 length * sqrt(mass / energy). ``kT`` is an energy; the engine knows no kelvin.
 """
 
-import math
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 MOLECULE = np.dtype(
     [
@@ -67,13 +66,13 @@ class Modes(NamedTuple):
     whether the rows of cells hold copies of trajectories (`rows`).
     """
 
-    contacts: bool
-    gravity: bool
-    rotation: bool
-    mixed: bool
-    spanning: bool
-    periodic: bool
-    piston: bool
+    contacts: bool = False
+    gravity: bool = False
+    rotation: bool = False
+    mixed: bool = False
+    spanning: bool = False
+    periodic: bool = False
+    piston: bool = False
     phases: bool = False
     pool: bool = False
     drops: int = 0
@@ -87,7 +86,7 @@ class Modes(NamedTuple):
         return self._replace(**left_out)
 
 
-class Box(NamedTuple):
+class Box(namedtuple("Box", "length_x length_y length_z inverse_x inverse_y inverse_z gravity planar exchange stall")):
     """The box: its sides, and the constants that hold everywhere in it.
 
     Sides [length], ``inverse_*`` 1/side on a periodic axis and 0 on a walled one [1/length], gravity along -z
@@ -95,29 +94,15 @@ class Box(NamedTuple):
     time [time] that many events must take at least: within less, the run counts as stalled.
     """
 
-    length_x: float
-    length_y: float
-    length_z: float
-    inverse_x: float
-    inverse_y: float
-    inverse_z: float
-    gravity: float
-    planar: bool
-    exchange: float
-    stall: float
 
-
-class Kinds(NamedTuple):
+class Kinds(namedtuple("Kinds", "table rotational_energy")):
     """The kinds of molecules.
 
     ``table : (kind,)`` of `KIND`, and ``rotational_energy : (molecule,)`` [energy] where molecules rotate.
     """
 
-    table: Any
-    rotational_energy: Any
 
-
-class Copies(NamedTuple):
+class Copies(namedtuple("Copies", "value occupied place centre horizon slack epoch room radius")):
     """What the rows of cells hold beside indices of molecules, where they hold copies of trajectories: see `rows`.
 
     ``value`` and ``occupied`` are the memory of ``Cells.row``, read as float32 and as words of 64 bits; ``place`` is
@@ -128,18 +113,13 @@ class Copies(NamedTuple):
     [length] of a usual molecule tell how dense a layer is.
     """
 
-    value: Any
-    occupied: Any
-    place: Any
-    centre: Any
-    horizon: Any
-    slack: Any
-    epoch: Any
-    room: Any
-    radius: float
 
-
-class Cells(NamedTuple):
+class Cells(
+    namedtuple(
+        "Cells",
+        "row stride boundary first span slot number_x number_y number_z last_slot_x last_slot_y last_slot_z copies",
+    )
+):
     """Which molecules lie in which cell.
 
     ``row : (cell * stride,)``: each cell's molecules (`cells`, or `rows`). ``boundary : (size,
@@ -149,32 +129,12 @@ class Cells(NamedTuple):
     number of slots minus one.
     """
 
-    row: Any
-    stride: int
-    boundary: Any
-    first: Any
-    span: Any
-    slot: Any
-    number_x: int
-    number_y: int
-    number_z: int
-    last_slot_x: int
-    last_slot_y: int
-    last_slot_z: int
-    copies: Copies
 
-
-class Calendar(NamedTuple):
+class Calendar(namedtuple("Calendar", "time winner leaf node depth")):
     """A tournament tree of the molecules' next events: see `calendar`."""
 
-    time: Any
-    winner: Any
-    leaf: int
-    node: int
-    depth: int
 
-
-class Walls(NamedTuple):
+class Walls(namedtuple("Walls", "law accommodation schedule schedule_time schedule_kT piston epoch")):
     """The six walls, in the order x low, x high, y low, y high, z low, z high.
 
     ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, and the temperatures as polygons in time:
@@ -183,16 +143,8 @@ class Walls(NamedTuple):
     time at which it had that position [time]). ``epoch`` is the time at which all clocks read zero.
     """
 
-    law: Any
-    accommodation: Any
-    schedule: Any
-    schedule_time: Any
-    schedule_kT: Any
-    piston: Any
-    epoch: Any
 
-
-class Tallies(NamedTuple):
+class Tallies(namedtuple("Tallies", "count impulse heat hits work virial layer_scale random progress")):
     """Counts and sums since the start.
 
     ``count : (5,)`` contacts, cells entered, cells left, stale predictions, wall hits; ``impulse``,
@@ -203,43 +155,17 @@ class Tallies(NamedTuple):
     time are a stalled run.
     """
 
-    count: Any
-    impulse: Any
-    heat: Any
-    hits: Any
-    work: Any
-    virial: Any
-    layer_scale: float
-    random: Any
-    progress: Any
 
-
-class Motion(NamedTuple):
+class Motion(namedtuple("Motion", "x y z vx vy vz")):
     """Position and velocity of one molecule at one time: ``x, y, z`` [length], ``vx, vy, vz`` [length/time]."""
 
-    x: float
-    y: float
-    z: float
-    vx: float
-    vy: float
-    vz: float
 
-
-class Gas(NamedTuple):
+class Gas(namedtuple("Gas", "molecules events kinds cells calendar box walls tallies")):
     """All data of the exact engine, as its kernels receive them.
 
-    ``molecules : (molecule,)`` of `MOLECULE` and ``events : (molecule,)`` of `EVENT`; the others are described at their
-    types. A kernel that takes a ``gas`` reads only the parts it needs; passing the others costs nothing.
+    ``molecules : (molecule,)`` of `MOLECULE` and ``events : (molecule,)`` of `EVENT`; the others are described at the
+    types of these names. A kernel that takes a ``gas`` reads only the parts it needs; passing the others costs nothing.
     """
-
-    molecules: Any
-    events: Any
-    kinds: Kinds
-    cells: Cells
-    calendar: Calendar
-    box: Box
-    walls: Walls
-    tallies: Tallies
 
 
 def aligned_records(number: int, dtype: np.dtype[Any]) -> Any:
@@ -253,39 +179,3 @@ def aligned_records(number: int, dtype: np.dtype[Any]) -> Any:
     buffer = np.zeros(number * dtype.itemsize + 64, np.uint8)
     start = -buffer.ctypes.data % 64
     return buffer[start : start + number * dtype.itemsize].view(dtype).view(np.recarray)
-
-
-def new_box(
-    sides: NDArray[np.float64],
-    periodic: tuple[bool, bool, bool],
-    *,
-    moving: bool,
-    gravity: float,
-    planar: bool,
-    exchange: float,
-    stall: float,
-) -> Box:
-    """Return the box as a `Box`; with a moving ceiling its height is ``inf``, as the position is kept in `Walls`.
-
-    Examples
-    --------
-    >>> box = new_box(np.ones(3), (True, False, False), moving=True, gravity=0.0, planar=False, exchange=1.0, stall=1.0)
-    >>> box.length_z, box.inverse_x, box.inverse_y
-    (inf, 1.0, 0.0)
-    """
-    length = [float(side) for side in sides]
-    if moving:
-        length[2] = math.inf
-    inverse = [1.0 / float(side) if turn else 0.0 for side, turn in zip(sides, periodic, strict=True)]
-    return Box(
-        length_x=length[0],
-        length_y=length[1],
-        length_z=length[2],
-        inverse_x=inverse[0],
-        inverse_y=inverse[1],
-        inverse_z=inverse[2],
-        gravity=gravity,
-        planar=planar,
-        exchange=exchange,
-        stall=stall,
-    )

@@ -9,7 +9,7 @@ molecules.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,8 @@ import numpy as np
 from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
-from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
-from atmosbox.engine.core.schedule import Schedule, as_schedule
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, number, shown
+from atmosbox.engine.core.schedule import Schedule, as_schedule, interpolate
 from atmosbox.engine.core.state import Walls
 
 SPECULAR, PERIODIC, HEAT_BATH, PISTON, POOL = 0, 1, 2, 3, 4
@@ -65,15 +65,6 @@ class Piston:
 Wall = Specular | Periodic | HeatBath | Piston
 
 
-@dataclass(frozen=True)
-class _Laws:
-    """The walls as numbers, one entry for each wall."""
-
-    law: list[int] = field(default_factory=list)
-    accommodation: list[float] = field(default_factory=list)
-    corners: list[list[tuple[float, float]]] = field(default_factory=list)
-
-
 def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     """Return the six walls as arrays, after checking them.
 
@@ -96,47 +87,33 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     """
     if len(walls) != 6:
         raise RefusedError(f"{len(walls)} walls are given: give six, {', '.join(WALL_NAMES)}")
-    laws = _Laws()
+    laws: list[int] = []
+    accommodations: list[float] = []
+    schedules: list[list[tuple[float, float]]] = []
     velocity = 0.0
     # each law is checked and becomes a number, with its accommodation and the corners of its schedule
     for name, wall in zip(WALL_NAMES, walls, strict=True):
-        corners: list[tuple[float, float]] = []
-        accommodation = 0.0
+        corners, accommodation = [(0.0, 1.0)], 0.0
         if isinstance(wall, Specular):
             law = SPECULAR
         elif isinstance(wall, Periodic):
             law = PERIODIC
         elif isinstance(wall, HeatBath):
             law = HEAT_BATH
-            try:
-                accommodation = float(wall.accommodation)
-            except (TypeError, ValueError):
-                accommodation = math.nan
-            if not 0.0 <= accommodation <= 1.0:
-                raise RefusedError(
-                    f"the accommodation of wall {name} = {shown(wall.accommodation)} is not a number from 0 to 1"
-                )
+            accommodation = number(wall.accommodation, f"accommodation of wall {name}", least=0.0, most=1.0)
             corners = as_schedule(wall.kT, f"kT of wall {name}")
         elif isinstance(wall, Piston):
             law = PISTON
             if name != "z_high":
                 raise RefusedError(f"wall {name} cannot be a piston: only the ceiling, z_high, moves")
-            try:
-                velocity = float(wall.velocity)
-            except (TypeError, ValueError):
-                velocity = math.nan
-            if not abs(velocity) <= LARGEST:
-                raise RefusedError(
-                    f"velocity of the piston = {shown(wall.velocity)} is impossible: give a finite number from "
-                    f"{-LARGEST:g} to {LARGEST:g}"
-                )
+            velocity = number(wall.velocity, "velocity of the piston", least=-LARGEST, most=LARGEST)
         else:
             raise RefusedError(f"wall {name} = {shown(wall)} is not a law: give Specular, Periodic, HeatBath or Piston")
-        laws.law.append(law)
-        laws.accommodation.append(accommodation)
-        laws.corners.append(corners or [(0.0, 1.0)])
+        laws.append(law)
+        accommodations.append(accommodation)
+        schedules.append(corners)
     for axis in range(3):
-        pair = laws.law[2 * axis : 2 * axis + 2]
+        pair = laws[2 * axis : 2 * axis + 2]
         if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
             low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
             raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
@@ -147,11 +124,11 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     #   start     0      1       2      3       4           7     8
     #   time      0      0       0      0       0  10  20   0
     #   kT        1      1       1      1       1   2   3   1
-    flat = [corner for corners in laws.corners for corner in corners]
-    start = np.concatenate([[0], np.cumsum([len(corners) for corners in laws.corners])])
+    flat = [corner for corners in schedules for corner in corners]
+    start = np.cumsum([0, *map(len, schedules)])
     return Walls(
-        law=np.array(laws.law, np.int64),
-        accommodation=np.array(laws.accommodation),
+        law=np.array(laws, np.int64),
+        accommodation=np.array(accommodations),
         schedule=start.astype(np.int64),
         schedule_time=np.array([time for time, _ in flat]),
         schedule_kT=np.array([kT for _, kT in flat]),
@@ -160,7 +137,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     )
 
 
-@kernel
+@kernel(plain=True)
 def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     """Return the temperature of a wall [energy] at a time [time] since the start.
 
@@ -168,20 +145,11 @@ def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     --------
     >>> from atmosbox.engine.core.schedule import Ramp
     >>> bath = HeatBath(Ramp(1.0, 3.0, start=0.0, end=10.0))
-    >>> wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0)
+    >>> float(wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0))
     2.0
     """
-    # constant before the first corner and after the last, linear between two corners
-    first = walls.schedule[wall]
-    last = walls.schedule[wall + 1] - 1
-    if last == first or time <= walls.schedule_time[first]:
-        return walls.schedule_kT[first]
-    for k in range(first, last):
-        if time < walls.schedule_time[k + 1]:
-            before = walls.schedule_time[k]
-            share = (time - before) / (walls.schedule_time[k + 1] - before)
-            return walls.schedule_kT[k] + share * (walls.schedule_kT[k + 1] - walls.schedule_kT[k])
-    return walls.schedule_kT[last]
+    first, last = walls.schedule[wall], walls.schedule[wall + 1]
+    return interpolate(time, walls.schedule_time[first:last], walls.schedule_kT[first:last])
 
 
 @kernel

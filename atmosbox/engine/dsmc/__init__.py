@@ -3,8 +3,7 @@
 `columns`             many molecules as a structure of arrays, sorted into cells
 `streaming`           a step of free flight, with wall hits on the way
 `pairing`             which molecules of a cell collide
-`moist_columns`       the events of liquid in a step, and a mist
-`moist_pool`          the events of a pool in a step
+`moist_columns`       the events of liquid in a step: of a mist, and of a pool
 `dsmc`                one time step
 `dsmc_parcel`         the box, advanced by this method
 `moist_dsmc_parcel`   the box of moist air, advanced by this method

@@ -12,7 +12,8 @@ the index follow those of the threads before it: the index is the same for any n
 
 import functools
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,7 @@ _EVEN_EMPTY = 8  # the work of a cell, even an empty one, in pairs
 _LINE, _PAGE = 8, 512  # numbers in a line of the cache, and in a page of memory
 
 
-class Columns(NamedTuple):
+class Columns(namedtuple("Columns", "x y z vx vy vz spin identity cell order kind")):
     """All molecules as columns: a structure of arrays.
 
     ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` rotational
@@ -35,49 +36,24 @@ class Columns(NamedTuple):
     kind of the molecule, if there are several.
     """
 
-    x: Any
-    y: Any
-    z: Any
-    vx: Any
-    vy: Any
-    vz: Any
-    spin: Any
-    identity: Any
-    cell: Any
-    order: Any
-    kind: Any
 
-
-class Grid(NamedTuple):
+class Grid(namedtuple("Grid", "number_x number_y number_z first place fastest")):
     """Cells of equal size, ``number_*`` along each axis; x changes fastest in their index.
 
     ``first : (cell + 1,)``: where the molecules of each cell begin in the index; ``place : (thread, cell)``:
     where those of each thread begin; ``fastest : (cell,)``: the largest relative speed found in it [length/time].
     """
 
-    number_x: int
-    number_y: int
-    number_z: int
-    first: Any
-    place: Any
-    fastest: Any
 
-
-class MoleculeKinds(NamedTuple):
+class MoleculeKinds(namedtuple("MoleculeKinds", "mass radius rotation masses rotations")):
     """The properties of the molecules: mass [mass], radius [length], rotational degrees of freedom.
 
     If there are several kinds, ``masses``, ``rotations : (kind,)`` are those of each kind, and ``mass`` is that of
     the lightest.
     """
 
-    mass: float
-    radius: float
-    rotation: float
-    masses: Any
-    rotations: Any
 
-
-class Workspace(NamedTuple):
+class Workspace(namedtuple("Workspace", "mark queue random counters met cut left")):
     """Working memory of one step.
 
     ``mark : (thread, BLOCK)``: which molecules of a block need work at walls, ``queue : (thread, BLOCK)``: a list
@@ -87,66 +63,32 @@ class Workspace(NamedTuple):
     on a pool still have to fly [time], if there is one.
     """
 
-    mark: Any
-    queue: Any
-    random: Any
-    counters: Any
-    met: Any
-    cut: Any
-    left: Any
 
-
-class Features(NamedTuple):
+class Features(namedtuple("Features", "rotates wet pool")):
     """The features that a box of many molecules requires: see `atmosbox.engine.dsmc.dsmc.specialise`."""
 
-    rotates: bool
-    wet: bool
-    pool: bool
 
-
-class Step(NamedTuple):
+class Step(namedtuple("Step", "start length ceiling top key")):
     """One step: its start and its length [time], the height of the ceiling before and after it [length].
 
     ``key`` is a random word of this step.
     """
 
-    start: float
-    length: float
-    ceiling: float
-    top: float
-    key: Any
 
-
-class Air(NamedTuple):
+class Air(namedtuple("Air", "columns grid gas box walls workspace tries water")):
     """The molecules in their box, in the form that the kernels take; see the types of its parts.
 
-    ``water`` is the liquid (`moist_columns.Water`), or None where there is none or it is not needed.
+    ``gas`` is a `MoleculeKinds`, ``tries`` are `pairing.Tries`; ``water`` is the liquid (`moist_columns.Water`), or
+    None where there is none or it is not needed.
     """
 
-    columns: Columns
-    grid: Grid
-    gas: MoleculeKinds
-    box: Any
-    walls: Any
-    workspace: Workspace
-    tries: Any
-    water: Any
 
-
-class March(NamedTuple):
+class March(namedtuple("March", "first steps length ceilings cross_section tallies water")):
     """A number of steps: the first, how many, their length [time], and the data used between the parallel loops.
 
     ``ceilings : (step + 1,)``: height of the ceiling before and after each step [length]; ``cross_section`` of a
     pair [length^2]; ``tallies``: the tallies, ``water``: the liquid, or None.
     """
-
-    first: int
-    steps: int
-    length: float
-    ceilings: Any
-    cross_section: float
-    tallies: Any
-    water: Any
 
 
 def new_columns(number: int, many: int) -> list[Any]:

@@ -50,8 +50,7 @@ from atmosbox.engine.dsmc.columns import (
     share_cells,
     share_of,
 )
-from atmosbox.engine.dsmc.moist_columns import mist_step
-from atmosbox.engine.dsmc.moist_pool import pool_step
+from atmosbox.engine.dsmc.moist_columns import mist_step, pool_step
 from atmosbox.engine.dsmc.pairing import collide, scramble
 from atmosbox.engine.dsmc.streaming import WAITS, Axis, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
 

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine.core.elementary import cbrt
-from atmosbox.engine.core.inputs import number, sum_of_squares, whole
+from atmosbox.engine.core.inputs import sum_of_squares
 from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
-from atmosbox.engine.core.refusal import RefusedError, StalledError, shown
-from atmosbox.engine.core.state import new_box
+from atmosbox.engine.core.refusal import RefusedError, StalledError, number, shown, whole
 from atmosbox.engine.dsmc.columns import Columns, March, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
 from atmosbox.engine.dsmc.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
 from atmosbox.engine.dsmc.pairing import new_tries
@@ -92,9 +91,7 @@ class DsmcParcel(MarchingParcel):
         threads: int = 1,
         **box: Unpack[Arrangement],
     ) -> None:
-        self._share = number(dt, "dt", least=0.0, most=10.0)
-        if self._share == 0.0:
-            raise RefusedError("dt = 0 would never end: give a time step above 0, in mean free times")
+        self._share = number(dt, "dt", above=0.0, most=10.0)
         self._occupancy = number(occupancy, "occupancy", least=1.0)
         self._cell = None if cell is None else number(cell, "cell", least=1e-3, most=1e3)
         self._threads = whole(threads, "threads", least=1)
@@ -134,9 +131,13 @@ class DsmcParcel(MarchingParcel):
 
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
-        kinetic = 0.5 * self._gas.mass * self._number * self._mean_square_speed()
         potential = self.gravity * self._gas.mass * float(np.sum(self._columns.z)) if self.gravity else 0.0
-        return kinetic, float(np.sum(self._columns.spin)) if self._rotates else 0.0, potential
+        spin = float(np.sum(self._columns.spin[: self._number])) if self._rotates else 0.0
+        return self._kinetic(), spin, potential
+
+    def _kinetic(self) -> float:
+        """Return the kinetic energy of all molecules [energy]."""
+        return float(0.5 * self._gas.mass * self._number * self._mean_square_speed())
 
     def memory(self) -> int:
         """Return the memory of molecules and cells, and of sorting the molecules into cells [bytes]."""
@@ -150,15 +151,7 @@ class DsmcParcel(MarchingParcel):
         self._gas, kind = self._classify()
         self._cross_section = 4.0 * math.pi * self._gas.radius * self._gas.radius if self._collisions else 0.0
         self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
-        self._box = new_box(
-            self._sides,
-            self._periodic,
-            moving=False,
-            gravity=self._gravity,
-            planar=False,
-            exchange=1.0 / self._collision_number,
-            stall=0.0,
-        )
+        self._box = self._new_box()
         sides = self._open_sides()
         if self._room and not min(sides) > 0.0:
             raise RefusedError(

@@ -1,4 +1,4 @@
-r"""The events of liquid in a step among many molecules; and the events of a mist.
+r"""The events of liquid in a step among many molecules: of a mist, and of a pool.
 
 All molecules have flown, and those that came to a pool wait on it. Then the events of the liquid are computed *one by
 one* in the order of their times within the step: a molecule meets it, one leaves it, one rains out. If all molecules
@@ -8,19 +8,24 @@ liquid has changed.
 
 In an ideal gas a molecule of speed w relative to the air meets the **mist** at the rate :math:`A w / 4 V`. The time is
 drawn for the largest speed of all, and a meeting is accepted with a probability proportional to the speed. A molecule
-that leaves the gas leaves a hole in the columns, which the last molecule fills. The pool is in `moist_pool`.
+that leaves the gas leaves a hole in the columns, which the last molecule fills.
+
+Molecules whose flight takes them to the **pool** wait there for their turn. A molecule that leaves it flies for *the
+rest of the step*, from wall to wall, and may be back within it. If it were put on the floor at the end of the step
+instead, there would be too few slow molecules above the pool, and the gas would be too hot.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import uniform
-from atmosbox.engine.dsmc.columns import cells_per_length, find_cell, number_present
+from atmosbox.engine.dsmc.columns import Step, cells_per_length, find_cell, number_present
 from atmosbox.engine.dsmc.pairing import scramble
-from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.dsmc.streaming import bounce
+from atmosbox.engine.exact.calendar import new_calendar, next_event, schedule
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
     LIQUID,
@@ -28,29 +33,24 @@ from atmosbox.engine.liquid.reservoir import (
     Reservoir,
     condense,
     direction,
-    evaporate,
+    emitted,
     evaporation_rate,
     exchange,
-    leave,
     rain_out,
     stays,
     wait,
 )
 
+_GONE = -1.0
 
-class Water(NamedTuple):
+
+class Water(namedtuple("Water", "reservoir calendar hole holes random")):
     """The liquid in a box of many molecules.
 
     ``reservoir``: its molecules and energy; ``calendar``: the times at which molecules waiting on a pool came to it;
     ``hole : (slot,)``: the slots of molecules that left the gas in this step, ``holes[0]`` of them; ``random : (1,)``:
     a state of random numbers.
     """
-
-    reservoir: Reservoir
-    calendar: Any
-    hole: Any
-    holes: Any
-    random: Any
 
 
 def new_water(reservoir: Reservoir, waiting: int) -> Water:
@@ -115,19 +115,9 @@ def touch(p, flow, air, features):
 def emit(p, where, flow, air, features):
     """Move a molecule from the liquid to a place (x, y, z) [length] in the gas, into a free slot."""
     columns, gas, reservoir, state = air.columns, air.gas, air.water.reservoir, air.water.random
-    mass = gas.masses[reservoir.kind]
-    flight, spin = evaporate(reservoir, state)
-    speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = direction(features.pool, state)
-    vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
-    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
-        # only the last molecule can lack the energy of the flow: it leaves as if the air were at rest
-        vz = speed * ez
-        energy = flight + spin
-    leave(reservoir, energy)
+    velocity, spin, _ = emitted(gas.masses[reservoir.kind], flow, features.pool, reservoir, state)
     columns.x[p], columns.y[p], columns.z[p] = where
-    columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
+    columns.vx[p], columns.vy[p], columns.vz[p] = velocity
     if features.rotates:
         columns.spin[p] = spin
     columns.kind[p] = reservoir.kind
@@ -218,3 +208,91 @@ def mist_step(step, air, features):
         meets = t + wait(number * often * bound, state)
         leaves = t + wait(evaporation_rate(reservoir), state)
         rains = next_rain(t, reservoir, state)
+
+
+@kernel
+def fill_holes(last, columns, left, water, rotates):
+    """Move the last molecules into the holes before them; ``last`` is the slot after the last one in use.
+
+    Examples
+    --------
+    The first and the third of four have left: the fourth takes the place of the first.
+
+    >>> import numpy as np
+    >>> from atmosbox.engine.dsmc.columns import Columns
+    >>> columns = Columns(*(np.arange(4.0) for _ in range(7)), *(np.arange(4) for _ in range(4)))
+    >>> left, gone = np.array([-1.0, 0.0, -1.0, 0.0]), (np.array([0, 2]), np.array([2]))
+    >>> fill_holes(4, columns, left, Water(None, None, *gone, None), True)
+    >>> columns.x[:2], left
+    (array([3., 1.]), array([0., 0., 0., 0.]))
+    """
+    for k in range(water.holes[0]):
+        while last > 0 and left[last - 1] == _GONE:
+            last -= 1
+            left[last] = 0.0
+        p = water.hole[k]
+        if p < last:
+            last -= 1
+            copy_slot(last, p, columns, rotates)
+            left[p] = 0.0
+    water.holes[0] = 0
+
+
+@kernel(entry=True)
+def pool_step(step, air, features):
+    """Resolve the events of a pool on the floor in a step, with the molecules that wait on it."""
+    columns, gas, box, water = air.columns, air.gas, air.box, air.water
+    reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, air.workspace.left
+    dt, ceiling, top = step.length, step.ceiling, step.top
+    state[0] = scramble(~step.key)
+    number = number_present(columns, water)
+    counters = air.workspace.counters[air.workspace.counters.shape[0] - 1]
+    rise = (top - ceiling) / dt
+    per_x, per_y, per_z = cells_per_length(top, air.grid, gas, box)
+    for p in range(number):
+        if left[p] > 0.0:
+            schedule(calendar, p, dt - left[p])
+    leaves = wait(evaporation_rate(reservoir), state)
+    rains = next_rain(0.0, reservoir, state)
+    while True:
+        p, comes = next_event(calendar)
+        t = min(comes, leaves, rains)
+        if t > dt:
+            break
+        flies = False
+        if t == comes:
+            schedule(calendar, p, math.inf)
+            left[p] = 0.0
+            mass = gas.masses[columns.kind[p]]
+            counters[0, 4] -= mass * columns.vz[p]
+            counters[2, 4] += 1.0
+            flies = not touch(p, 0.0, air, features)
+            if not flies:
+                strike(p, columns, reservoir)
+                left[p] = _GONE
+                water.hole[water.holes[0]] = p
+                water.holes[0] += 1
+        elif t == leaves:
+            flies = True
+            p = number
+            if water.holes[0] > 0:
+                water.holes[0] -= 1
+                p = water.hole[water.holes[0]]
+            else:
+                number += 1
+            left[p] = 0.0
+            x = place(gas.radius, box.length_x, box.inverse_x, state)
+            y = place(gas.radius, box.length_y, box.inverse_y, state)
+            emit(p, (x, y, gas.radius), 0.0, air, features)
+        else:
+            rain_out(reservoir)
+        if flies:
+            counters[0, 4] += gas.masses[columns.kind[p]] * columns.vz[p]
+            rest = Step(step.start + t, dt - t, ceiling + rise * t, top, step.key)
+            bounce(p, rest, air, state, counters, features)
+            find_cell(p, per_x, per_y, per_z, columns, air.grid, gas, box)
+            if left[p] > 0.0:
+                schedule(calendar, p, dt - left[p])
+        leaves = t + wait(evaporation_rate(reservoir), state)
+        rains = next_rain(t, reservoir, state)
+    fill_holes(number, columns, left, water, features.rotates)

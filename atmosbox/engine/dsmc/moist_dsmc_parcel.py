@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar, Unpack
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine.core.kind import classify
-from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
+from atmosbox.engine.core.parcel import Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.dsmc.columns import BLOCK, MoleculeKinds, new_workspace
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
@@ -45,7 +45,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     --------
     A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
-    >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
+    >>> from atmosbox.engine import Mist, Substance
     >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> box = MoistDsmcParcel([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0), seed=1)
     >>> box.advance(50.0)
@@ -57,20 +57,9 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     _wet = True
     _water: Water
 
-    def __init__(
-        self,
-        position: ArrayLike,
-        velocity: ArrayLike,
-        *,
-        liquid: Liquid,
-        dt: float = 0.2,
-        occupancy: float = 10.0,
-        cell: float | None = None,
-        threads: int = 1,
-        **box: Unpack[Arrangement],
-    ) -> None:
+    def __init__(self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid, **box: Any) -> None:
         self._liquid = liquid
-        super().__init__(position, velocity, dt=dt, occupancy=occupancy, cell=cell, threads=threads, **box)
+        super().__init__(position, velocity, **box)
 
     # ------------------------------------------------------------------ the state
 
@@ -86,12 +75,6 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         position, velocity = (np.stack([column[order] for column in s[k : k + 3]], axis=1) for k in (0, 3))
         return Snapshot(self.time, position, velocity, s.spin[order] if self._rotates else np.zeros(n))
 
-    def energy(self) -> tuple[float, float, float]:
-        """Return kinetic, rotational and potential energy now [energy]."""
-        n = self._number
-        rotational = float(np.sum(self._columns.spin[:n])) if self._rotates else 0.0
-        return self._kinetic(), rotational, 0.0
-
     def memory(self) -> int:
         """Return the memory of molecules, cells and liquid, and of sorting the molecules into cells [bytes]."""
         calendar = self._water.calendar
@@ -106,10 +89,8 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         self._refuse_what_no_liquid_bears()
         self._pool = isinstance(self._liquid, Pool)
         super()._begin(position, velocity, rotational_energy)
-        substance = self._liquid.substance
-        alike = (self._gas.masses == substance.mass) & (self._gas.rotations == substance.rotation)
-        alike &= 2.0 * self._gas.radius == substance.diameter
-        self._open_reservoir(alike, self._columns.kind)
+        diameter = np.full(len(self._gas.masses), 2.0 * self._gas.radius)
+        self._open_reservoir(self._gas.masses, diameter, self._gas.rotations, self._columns.kind)
         self._water = new_water(self._reservoir, self._room if self._pool else 1)
         self._spare_kind = np.empty_like(self._columns.kind)
 

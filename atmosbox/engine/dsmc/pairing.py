@@ -10,7 +10,7 @@ neither on other cells nor on the thread that computes it.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -33,21 +33,13 @@ _AHEAD = 16  # a pair is fetched from memory this number of tries ahead
 _MANY = 200_000  # this many molecules do not stay in a cache
 
 
-class Tries(NamedTuple):
+class Tries(namedtuple("Tries", "word bar cell begin number one other")):
     """A list of tries, for each thread; each step overwrites it.
 
     ``word : (thread, try)``: a random word; ``bar``: the largest relative speed in its cell [length/time], later the
     squared speed above which this pair collides; ``cell``: its cell; ``begin``, ``number``: where the molecules of
     that cell begin in the index, and how many they are; ``one``, ``other``: the two slots drawn.
     """
-
-    word: Any
-    bar: Any
-    cell: Any
-    begin: Any
-    number: Any
-    one: Any
-    other: Any
 
 
 def new_tries(threads: int) -> Tries:

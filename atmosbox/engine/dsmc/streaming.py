@@ -10,7 +10,7 @@ too hot.
 """
 
 import math
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -24,18 +24,12 @@ WAITS = 4
 _MOST_HITS = 1000
 
 
-class Axis(NamedTuple):
+class Axis(namedtuple("Axis", "low high per_length last stride")):
     """An axis along which molecules move: the lowest and highest coordinate of a centre [length], and the cells.
 
     ``per_length``: number of cells per length [1/length], ``last``: index of the last cell, ``stride``: the step of
     a cell's number from one cell to the next along the axis.
     """
-
-    low: float
-    high: float
-    per_length: float
-    last: int
-    stride: int
 
 
 @kernel

@@ -12,9 +12,9 @@ compiles them. If memory is too small, they return ``FULL``; Python makes more a
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
@@ -64,12 +64,11 @@ def set_back(step, gas, clocks, modes):
 
 
 # The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
-_DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
-_ROW_FULL, _EPOCH_OVER = Status.ROW_FULL.value, Status.EPOCH_OVER.value
-_CRUSHED, _TURNED, _CROWDED = Status.CRUSHED.value, Status.TURNED.value, Status.CROWDED.value
+_DONE, _FULL, _CROWDED = Status.DONE.value, Status.FULL.value, Status.CROWDED.value
+_EPOCH_OVER, _TURNED = Status.EPOCH_OVER.value, Status.TURNED.value
 
 
-class Book(NamedTuple):
+class Book(namedtuple("Book", "now epoch_length clocks turn energy moisture")):
     """The data of a box besides its gas.
 
     ``now : (1,)`` is the time that its clocks show [time]; ``epoch_length : (1,)`` the time after which they are set
@@ -77,29 +76,6 @@ class Book(NamedTuple):
     at which Python sets the velocity of the piston next [time], ``inf`` if it never does;
     ``energy : (1,)`` the energy at the start [energy]; ``moisture`` the liquid, 0 if there is none.
     """
-
-    now: Any
-    epoch_length: Any
-    clocks: Any
-    turn: Any
-    energy: Any
-    moisture: Any
-
-
-class Passed(IntEnum):
-    """Why a call of ``pass_time`` has ended.
-
-    ``DONE``: the requested time is reached; ``BUSY``: the largest number of events is reached; ``STALLED``: events pile
-    up without progress; ``FULL``: what is due in the cells needs more memory, or other cells than compiled code knows;
-    ``CRUSHED``: the piston is too low; ``CROWDED``: there is no free place for a molecule that evaporates.
-    """
-
-    DONE = 0
-    BUSY = 1
-    STALLED = 2
-    FULL = 3
-    CRUSHED = 4
-    CROWDED = 5
 
 
 @kernel(plain=True)
@@ -178,27 +154,20 @@ def passing(
 
     @kernel(plain=True)
     def resolve(gas, ascent, book, layout, stop, most):
-        """Resolve events up to the local time `stop`, at most `most` of them; return a `Passed` and their number."""
+        """Resolve events up to the local time `stop`, at most `most` of them; return a `Status` and their number."""
         done = 0
         while True:
             if not settle(gas, book.now[0], layout):
-                return Passed.FULL, done
+                return _FULL, done
             status, some = proceed(gas, ascent, book, layout, stop, most - done)
             done += some
             book.now[0] = max(book.now[0], min(stop, next_time(gas, book.clocks)))
             if status == _DONE:
                 book.now[0] = stop
-                return Passed.DONE, done
-            if status == _BUSY:
-                return Passed.BUSY, done
-            if status == _STALLED:
-                return Passed.STALLED, done
-            if status == _CRUSHED:
-                return Passed.CRUSHED, done
-            if status == _CROWDED:
-                return Passed.CROWDED, done
+            if status <= _CROWDED and status != _FULL:
+                return status, done
             layout.due[0] = CHOOSE
-            if status == _ROW_FULL:
+            if status == _FULL:
                 layout.due[0] = LENGTHEN
             elif status == _EPOCH_OVER:
                 layout.due[0] = NEW_EPOCH
@@ -208,7 +177,7 @@ def passing(
 
     @kernel(plain=True)
     def pass_time(gas, ascent, book, layout, until, most):
-        """Advance to ``until`` [time since the start], or by ``most`` events; return a `Passed` and the events."""
+        """Advance to ``until`` [time since the start], or by ``most`` events; return a `Status` and the events."""
         done = 0
         while True:
             local = until - gas.walls.epoch[0]
@@ -226,8 +195,8 @@ def passing(
             goal = book.epoch_length[0] if shifts else local
             status, some = resolve(gas, ascent, book, layout, goal, most - done)
             done += some
-            if status != Passed.DONE or not shifts:
-                return status.value, done
+            if status != _DONE or not shifts:
+                return status, done
 
     made: Callable[..., Any] = pass_time
     return made

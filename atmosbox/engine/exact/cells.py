@@ -24,7 +24,7 @@ long: first the number of its molecules, then their indices::
 """
 
 import math
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,16 +41,8 @@ ROW = 32
 """Number of words of a row at first, where rows hold no copies."""
 
 
-class Grid(NamedTuple):
+class Grid(namedtuple("Grid", "number boundary first span last_slot spanning images")):
     """Cells without copies, and slots along the three axes: see `state.Cells`."""
-
-    number: tuple[int, int, int]
-    boundary: NDArray[np.float64]
-    first: NDArray[np.int32]
-    span: NDArray[np.int32]
-    last_slot: tuple[int, int, int]
-    spanning: bool
-    images: bool
 
 
 def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -250,6 +242,45 @@ def slot_at(u, size, axis, last, cells, modes):
         else:
             upper = middle
     return lower
+
+
+@kernel
+def slots_at(x, y, z, size, cells, modes):
+    """Return the slots of a centre along x, y and z."""
+    return (
+        slot_at(x, size, 0, cells.last_slot_x, cells, modes),
+        slot_at(y, size, 1, cells.last_slot_y, cells, modes),
+        slot_at(z, size, 2, cells.last_slot_z, cells, modes),
+    )
+
+
+@kernel
+def side(axis, box):
+    """Return the length of the box along an axis [length], and its inverse if the axis is periodic, else 0."""
+    if axis == 0:
+        return box.length_x, box.inverse_x
+    if axis == 1:
+        return box.length_y, box.inverse_y
+    return box.length_z, box.inverse_z
+
+
+@kernel
+def turns_past(u, axis, size, gas):
+    """Return by how many whole lengths of a periodic box a coordinate lies beyond it [length]; 0 along other axes."""
+    length, inverse = side(axis, gas.box)
+    return math.floor((u - gas.cells.boundary[size, axis, 0]) / length) * length if inverse != 0.0 else 0.0
+
+
+@kernel
+def shift(i, axis, by, gas):
+    """Shift molecule i along an axis."""
+    molecule = gas.molecules[i]
+    if axis == 0:
+        molecule.x += by
+    elif axis == 1:
+        molecule.y += by
+    else:
+        molecule.z += by
 
 
 @kernel

@@ -10,9 +10,9 @@ import numpy as np
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.exact.calendar import schedule
-from atmosbox.engine.exact.cells import append, overlapped, remove
+from atmosbox.engine.exact.cells import append, overlapped, remove, shift, side
 from atmosbox.engine.exact.encounter import size_and_radius
-from atmosbox.engine.exact.prediction import Meeting, next_move, side, soonest_in_cell
+from atmosbox.engine.exact.prediction import Meeting, next_move, soonest_in_cell
 from atmosbox.engine.exact.search import CONTACT
 
 
@@ -67,19 +67,19 @@ def cross(i, what, t, at, gas, modes):
     # the next slot; beyond a periodic end it is the first or last, and the molecule is shifted by one box length
     length, inverse = side(axis, gas.box)
     next_slot = slot + 2 * up - 1
-    shift = 0.0
+    by = 0.0
     if modes.periodic and inverse != 0.0:
         last = cells.last_slot_x if axis == 0 else (cells.last_slot_y if axis == 1 else cells.last_slot_z)
         if next_slot < 0:
             next_slot = last
-            shift = length
+            by = length
         elif next_slot > last:
             next_slot = 0
-            shift = -length
-        if shift != 0.0:
-            x = at.x + (shift if axis == 0 else 0.0)
-            y = at.y + (shift if axis == 1 else 0.0)
-            z = at.z + (shift if axis == 2 else 0.0)
+            by = -length
+        if by != 0.0:
+            x = at.x + (by if axis == 0 else 0.0)
+            y = at.y + (by if axis == 1 else 0.0)
+            z = at.z + (by if axis == 2 else 0.0)
             at = Motion(x, y, z, at.vx, at.vy, at.vz)
     # the one layer of cells, across this axis, that is entered (the span grows) or left (the span shrinks)
     first, span = overlapped(slot, size, axis, cells, modes)
@@ -138,13 +138,8 @@ def cross(i, what, t, at, gas, modes):
                 else:
                     remove(cells.row, start, i)
     # the molecule's own record changes only where it has crossed a periodic boundary
-    if modes.periodic and shift != 0.0:
-        if axis == 0:
-            gas.molecules[i].x += shift
-        elif axis == 1:
-            gas.molecules[i].y += shift
-        else:
-            gas.molecules[i].z += shift
+    if modes.periodic and by != 0.0:
+        shift(i, axis, by, gas)
     cells.slot[i, axis] = next_slot
     slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
     time, what = next_move(slots, t, at, size, radius, gas, modes)

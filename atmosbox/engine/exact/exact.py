@@ -22,11 +22,11 @@ from atmosbox.engine.core.jit import POSITIVE, by_reference, kernel, prefetch
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.calendar import next_event
-from atmosbox.engine.exact.cells import slot_at
+from atmosbox.engine.exact.cells import shift, slots_at, turns_past
 from atmosbox.engine.exact.crossing import Crossed, cross, is_wall
 from atmosbox.engine.exact.encounter import hit, meet, motion_at, size_and_radius
 from atmosbox.engine.exact.membership import Change, change, listed, places
-from atmosbox.engine.exact.prediction import CEILING, call, plan, side
+from atmosbox.engine.exact.prediction import CEILING, call, plan
 from atmosbox.engine.exact.rows import STOP, fill
 from atmosbox.engine.exact.search import CONTACT
 from atmosbox.engine.exact.turning import Next, ahead, gauges, replan_under, turn
@@ -35,24 +35,24 @@ from atmosbox.engine.exact.turning import Next, ahead, gauges, replan_under, tur
 class Status(IntEnum):
     """Why the loop over events has stopped.
 
-    ``DONE``: the requested time is reached; ``BUSY``: as many events are resolved as were requested; ``ROW_FULL``: the
-    row of a cell must become longer; ``STALLED``: very many events in a vanishing time; ``MEETS_LIQUID``: the next
-    event is a molecule that meets a pool or a drop, which the caller resolves; ``CROWDED``: there is no free place for
-    a molecule that evaporates; ``EPOCH_OVER``: the copies in the rows must be written again before the next event;
-    ``OUTGROWN``: a molecule has risen above the cells, which must be chosen again; ``CRUSHED``: the piston has come too
-    low; ``TURNED``: the piston has a new velocity, and the cells must be chosen again because the height of the box has
-    changed too much.
+    ``DONE``: the requested time is reached; ``BUSY``: as many events are resolved as were requested; ``STALLED``: very
+    many events in a vanishing time; ``FULL``: the row of a cell must become longer; ``CRUSHED``: the piston has come
+    too low; ``CROWDED``: there is no free place for a molecule that evaporates. `advance` handles the others:
+    ``MEETS_LIQUID``: the next event is a molecule that meets a pool or a drop, which the caller resolves;
+    ``EPOCH_OVER``: the copies in the rows must be written again before the next event; ``OUTGROWN``: a molecule has
+    risen above the cells, which must be chosen again; ``TURNED``: the piston has a new velocity, and the cells must be
+    chosen again because the height of the box has changed too much.
     """
 
     DONE = 0
     BUSY = 1
-    ROW_FULL = 2
-    STALLED = 3
-    MEETS_LIQUID = 4
+    STALLED = 2
+    FULL = 3
+    CRUSHED = 4
     CROWDED = 5
-    EPOCH_OVER = 6
-    OUTGROWN = 7
-    CRUSHED = 8
+    MEETS_LIQUID = 6
+    EPOCH_OVER = 7
+    OUTGROWN = 8
     TURNED = 9
 
 
@@ -127,7 +127,7 @@ def proceed(gas, until, most, modes):
             else:
                 crossed = cross(i, what, t, at, gas, modes)
                 if crossed == Crossed.FULL:
-                    status = Status.ROW_FULL
+                    status = Status.FULL
                     break
                 entered += 1 if crossed == Crossed.ENTERED else 0
                 left += 1 if crossed == Crossed.LEFT else 0
@@ -170,7 +170,7 @@ def proceed(gas, until, most, modes):
             j = -1
             at = other
         if full:
-            status = Status.ROW_FULL
+            status = Status.FULL
             break
     tallies.count[0] += contacts
     tallies.count[1] += entered
@@ -183,18 +183,10 @@ def proceed(gas, until, most, modes):
 @kernel
 def _into_box(i, axis, u, size, gas):
     """Return a coordinate brought back into a periodic box, from the lowest boundary on; update the molecule."""
-    length, inverse = side(axis, gas.box)
-    if inverse != 0.0:
-        turns = math.floor((u - gas.cells.boundary[size, axis, 0]) / length)
-        if turns != 0.0:
-            u -= turns * length
-            if axis == 0:
-                gas.molecules[i].x -= turns * length
-            elif axis == 1:
-                gas.molecules[i].y -= turns * length
-            else:
-                gas.molecules[i].z -= turns * length
-    return u
+    turns = turns_past(u, axis, size, gas)
+    if turns != 0.0:
+        shift(i, axis, -turns, gas)
+    return u - turns
 
 
 @functools.cache
@@ -213,19 +205,16 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 continue
             at = motion_at(i, now, gas, modes)
             size, _ = size_and_radius(i, gas, modes)
-            slots = (
-                slot_at(_into_box(i, 0, at.x, size, gas), size, 0, cells.last_slot_x, cells, modes),
-                slot_at(_into_box(i, 1, at.y, size, gas), size, 1, cells.last_slot_y, cells, modes),
-                slot_at(_into_box(i, 2, at.z, size, gas), size, 2, cells.last_slot_z, cells, modes),
-            )
+            x, y = _into_box(i, 0, at.x, size, gas), _into_box(i, 1, at.y, size, gas)
+            slots = slots_at(x, y, _into_box(i, 2, at.z, size, gas), size, cells, modes)
             cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = slots
             call(i, now, gas)
             if modes.contacts and not modes.rows:
                 if change(Change.TEST, i, size, slots, cells, modes):
-                    return Status.ROW_FULL.value
+                    return Status.FULL.value
                 change(Change.ADD, i, size, slots, cells, modes)
         if modes.rows and fill(now, gas, modes):
-            return Status.ROW_FULL.value
+            return Status.FULL.value
         return Status.DONE.value
 
     @kernel(entry=True)

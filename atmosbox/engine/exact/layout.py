@@ -6,8 +6,9 @@ too little, `settling` says so. Then Python makes more and calls again; a page s
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,10 +31,10 @@ PLACES, NUMBER, LAST = 0, 1, 4
 NOTHING, LENGTHEN, COPY, NEW_EPOCH, PLACE, CHOOSE, FOLLOW = range(7)
 """What is due in the cells: nothing; longer rows; copies of the present time; copies from the next event on; to enter
 all molecules; other cells for a ceiling at another height; layers that follow the molecules."""
-_ROW_FULL = Status.ROW_FULL.value
+_FULL = Status.FULL.value
 
 
-class Layout(NamedTuple):
+class Layout(namedtuple("Layout", "shape due filled edge radius column")):
     """The present cells of a box.
 
     ``shape : (7,)`` holds the places of a row, the numbers of cells and the last slots; ``due : (1,)`` what is to be
@@ -42,28 +43,14 @@ class Layout(NamedTuple):
     the edges of the cells, with memory for more, and ``column`` is the data for the choice of layers in gravity.
     """
 
-    shape: Any
-    due: Any
-    filled: Any
-    edge: Any
-    radius: Any
-    column: Any
 
-
-class Column(NamedTuple):
+class Column(namedtuple("Column", "weight bath wanted thinnest count old")):
     """The data, besides its temperature, from which the layers of a column are chosen.
 
     ``weight`` is that of a molecule [force], ``bath`` the temperature of the warmest wall [energy], ``wanted`` the
     requested number of layers, ``thinnest`` the smallest height of a layer [length]; ``count`` and ``old`` are scratch,
     for as many layers and one more.
     """
-
-    weight: float
-    bath: float
-    wanted: int
-    thinnest: float
-    count: Any
-    old: Any
 
 
 def new_rows(words: int) -> NDArray[np.uint32]:
@@ -203,24 +190,22 @@ def describe(gas, layout, modes):
 
 
 @kernel(plain=True)
-def _has_memory(gas, layout, times, modes):
-    """Return whether there is memory for rows that are so many times as long."""
+def _has_memory(gas, layout, modes):
+    """Return whether there is memory for the present rows."""
     shape = layout.shape
     cells = shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2]
-    return times * cells * stride_of(layout, modes) <= gas.cells.row.size
+    return cells * stride_of(layout, modes) <= gas.cells.row.size
 
 
 @kernel(plain=True)
-def _double_rows(gas, layout, modes):
-    """Make rows of numbers twice as long in the same memory; return whether there is enough."""
-    if not _has_memory(gas, layout, 2, modes):
+def double_rows(memory, rows, old):
+    """Make rows of ``old`` words twice as long in the same memory; return whether there is enough."""
+    if 2 * old * rows > memory.size:
         return False
-    row, shape, old = gas.cells.row, layout.shape, stride_of(layout, modes)
     # from the last row to the first, so that none is overwritten before it is moved
-    for cell in range(shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2] - 1, 0, -1):
-        for place in range(np.int64(row[cell * old]), -1, -1):
-            row[2 * cell * old + place] = row[cell * old + place]
-    shape[PLACES] += old
+    for row in range(rows - 1, 0, -1):
+        for place in range(np.int64(memory[row * old]), -1, -1):
+            memory[2 * row * old + place] = memory[row * old + place]
     return True
 
 
@@ -247,7 +232,7 @@ def settling(modes: Modes) -> Callable[..., Any]:
                 return False
             shape[PLACES] = FEWEST
             most = max(shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2])
-            if most >= layout.edge.shape[1] or not _has_memory(gas, layout, 1, modes):
+            if most >= layout.edge.shape[1] or not _has_memory(gas, layout, modes):
                 return False
             write_cells(gas, layout, modes)
             return True
@@ -272,22 +257,24 @@ def settling(modes: Modes) -> Callable[..., Any]:
                 if modes.rows:
                     shape[PLACES] += MORE
                     due[0] = COPY
-                elif _double_rows(gas, layout, modes):
+                else:
+                    old, cells = stride_of(layout, modes), shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2]
+                    if not double_rows(gas.cells.row, cells, old):
+                        return False
+                    shape[PLACES] += old
                     due[0] = NOTHING
                     continue
-                else:
-                    return False
             if modes.rows and shape[PLACES] > MOST:
                 due[0] = FOLLOW
                 continue
-            if not _has_memory(gas, layout, 1, modes):
+            if not _has_memory(gas, layout, modes):
                 return False
             here = as_laid_out(gas, layout, modes)
             if due[0] == PLACE:
                 gas.cells.copies.place[:] = 0  # these are all bytes of the events
                 gas.calendar.time[:] = math.inf
                 gas.calendar.winner[:] = 0
-                short = place_all(here, now) == _ROW_FULL
+                short = place_all(here, now) == _FULL
             elif modes.rows:
                 short = refill(here, gas.calendar.time[1] if due[0] == NEW_EPOCH else now)
             else:

@@ -11,42 +11,26 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.lift import FollowPressure
 from atmosbox.engine.core.packing import refuse_solid
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
-from atmosbox.engine.core.refusal import RefusedError, StalledError
-from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records, new_box
+from atmosbox.engine.core.refusal import RefusedError, StalledError, number
+from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
-from atmosbox.engine.exact.advance import Book, Passed, advancing, dry_loop
+from atmosbox.engine.exact import layout
+from atmosbox.engine.exact.advance import Book, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, choose_grid
-from atmosbox.engine.exact.exact import specialise
-from atmosbox.engine.exact.layout import (
-    CHOOSE,
-    FOLLOW,
-    LENGTHEN,
-    NUMBER,
-    PLACE,
-    Column,
-    Layout,
-    as_laid_out,
-    choose_cells,
-    new_cells,
-    new_rows,
-    stride_of,
-    write_cells,
-    write_column,
-)
+from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.row_cells import MARGIN, TALLER, widths_for_rows
 from atmosbox.engine.exact.rows import FEWEST
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
 _CHUNK = 200_000
+_WHY = {Status.STALLED: why_stalled, Status.CROWDED: why_crowded, Status.CRUSHED: why_crushed}
 _NO_CLOCKS = np.full(1, math.inf)
-_OVERLAP = 1e-9
 
 
 class Arrays(NamedTuple):
@@ -102,38 +86,46 @@ class ParcelSet(Parcel):
             refuse_solid(self._sides, self._diameter, self._planar)
         self._crowded = False
         self._fill(position, velocity, rotational_energy)
-        self._box = new_box(
-            self._sides,
-            self._periodic,
-            moving=self._walls.law[5] == PISTON,
-            gravity=self._gravity,
-            planar=self._planar,
-            exchange=1.0 / self._collision_number,
-            stall=1e-9 * self._spread,
-        )
+        self._box = self._new_box(moving=self._walls.law[5] == PISTON, stall=1e-9 * self._spread)
         self._epoch_length = math.ldexp(1024.0, math.frexp(self._spread)[1] - 1)
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
         self._cells: Cells
         self._layout: Any
         self._lay_out()
-        depth, i, j = self._overlap(self._gas())
-        if depth > _OVERLAP:
-            raise RefusedError(
-                f"molecules {i} and {j} overlap at the start, by {depth:.3g} of their diameter: "
-                "move them apart or make them smaller"
-            )
+        self._refuse_overlap(*self._overlap(self._gas()))
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules into the engine's arrays."""
         self._kinds, kind, self._size_radius = classify(
             self._mass, self._diameter, self._rotation, np.array(rotational_energy) if self._rotates else None
         )
+        self._write(position, velocity, kind)
+
+    def _write(self, position: Array, velocity: Array, kind: NDArray[np.int64]) -> None:
+        """Make records of molecules."""
         self._molecules = aligned_records(len(position), MOLECULE)
-        for axis, name in enumerate("xyz"):
-            self._molecules[name] = position[:, axis]
-            self._molecules["v" + name] = velocity[:, axis]
-        self._molecules["kind"] = kind
         self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads its fields ten times faster
+        self._fields["kind"] = kind
+        self._move(position, velocity, 0.0)
+
+    def _move(self, position: Array, velocity: Array, now: float) -> None:
+        """Write positions and velocities at a local time."""
+        for axis, name in enumerate("xyz"):
+            self._fields[name], self._fields["v" + name] = position[:, axis], velocity[:, axis]
+        self._fields["clock"] = now
+
+    def _flown(self, m: NDArray[np.void], *, turn: bool = True) -> tuple[Array, Array]:
+        """Return the positions now, brought back into a periodic box if asked, and the velocities of some records."""
+        dt = self._now - m["clock"]
+        position = np.stack([m[axis] + dt * m["v" + axis] for axis in "xyz"], axis=1)
+        velocity = np.stack([m["v" + axis] for axis in "xyz"], axis=1)
+        if self.gravity > 0.0:
+            position[:, 2] -= 0.5 * self.gravity * dt * dt
+            velocity[:, 2] -= self.gravity * dt
+        for axis in range(3):
+            if turn and self._periodic[axis]:
+                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
+        return position, velocity
 
     def memory(self) -> int:
         """Return the memory of molecules, events, cells and calendar, and of the properties of molecules [bytes]."""
@@ -145,28 +137,13 @@ class ParcelSet(Parcel):
 
     def arrays(self) -> Arrays:
         """Return what the kernels of this box work on; they change as the box advances, and may be replaced."""
-        return Arrays(
-            gas=self._gas(),
-            modes=self._modes,
-            ascent=next(iter(self._ascent()), None),
-            book=self._book(),
-            layout=self._layout,
-        )
+        return Arrays(self._gas(), self._modes, self._ascent(), self._book(), self._layout)
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are now; the box does not change."""
         m = self._fields[self._present]
-        dt = self._now - m["clock"]
-        position = np.stack([m["x"] + dt * m["vx"], m["y"] + dt * m["vy"], m["z"] + dt * m["vz"]], axis=1)
-        velocity = np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
-        if self.gravity > 0.0:
-            position[:, 2] -= 0.5 * self.gravity * dt * dt
-            velocity[:, 2] -= self.gravity * dt
-        for axis in range(3):
-            if self._periodic[axis]:
-                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
         spin = np.array(self._kinds.rotational_energy[self._present]) if self._rotates else np.zeros(len(m))
-        return Snapshot(self.time, position, velocity, spin)
+        return Snapshot(self.time, *self._flown(m), spin)
 
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
         """Advance the box to the time ``until`` [time since the start]: see `Parcel.advance`."""
@@ -199,12 +176,10 @@ class ParcelSet(Parcel):
         self._replan(self._gas(), self._now, lowest)
 
     def _field_changes(self, gravity: float) -> None:
-        _, position, velocity, _ = self.snapshot()
-        for axis, name in enumerate("xyz"):
-            place, side = position[:, axis], self._sides[axis]
-            self._fields[name] = place % side if self._periodic[axis] else place
-            self._fields["v" + name] = velocity[:, axis]
-        self._fields["clock"] = self._now
+        position, velocity = self._flown(self._fields)
+        turns = np.array(self._periodic)
+        position[:, turns] %= self._sides[turns]
+        self._move(position, velocity, self._now)
         self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
         self._lay_out()
 
@@ -216,26 +191,22 @@ class ParcelSet(Parcel):
             crushed = self.time + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
             if crushed <= self.time:
                 raise StalledError(why_crushed(self))
-        left, status = _CHUNK, Passed.BUSY
-        while status != Passed.DONE:
-            book = self._book()
-            given = self._data(), next(iter(self._ascent()), 0), book, self._layout, min(until, crushed), left
-            status, done = self._pass_time(*given)
+        left, status = _CHUNK, Status.BUSY
+        while status != Status.DONE:
+            data, ascent, book = self._data(), self._ascent() or 0, self._book()
+            status, done = self._pass_time(data, ascent, book, self._layout, min(until, crushed), left)
             self._now = float(book.now[0])
             left -= done
-            if status == Passed.FULL:
+            if status == Status.FULL:
                 self._make_room()
-            elif status == Passed.STALLED:
-                raise StalledError(why_stalled(self))
-            elif status == Passed.CROWDED:
-                raise StalledError(why_crowded(self))
-            elif status == Passed.CRUSHED:
-                position, speed, since = self._walls.piston
-                self._now = float(since + (position - self._lowest_ceiling) / -speed)
-                raise StalledError(why_crushed(self))
+            elif status in _WHY:
+                if status == Status.CRUSHED:
+                    position, speed, since = self._walls.piston
+                    self._now = float(since + (position - self._lowest_ceiling) / -speed)
+                raise StalledError(_WHY[status](self))
             elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                 raise StalledError(why_crushed(self))
-            elif status == Passed.BUSY:
+            elif status == Status.BUSY:
                 left = _CHUNK
                 if watch is not None:
                     watch(self.time)
@@ -247,15 +218,15 @@ class ParcelSet(Parcel):
         """Whether compiled code moves the piston: it knows one driver, and needs molecules of one size."""
         return type(self._driver) is FollowPressure and self._same_size and not self._first_drop
 
-    def _ascent(self) -> tuple[Ascent] | tuple[()]:
-        """Return the last argument of the kernels that move the piston; nothing if none does."""
+    def _ascent(self) -> Ascent | None:
+        """Return the data of a piston that compiled code moves, or None."""
         if not self._ascends:
-            return ()
+            return None
         assert isinstance(self._driver, FollowPressure)
         diameter = float(self._diameter[0])
         energy = self._start_energy, self._gravity_work
         heights = float(self._layout.filled[0]), float(self._lowest_ceiling)
-        return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
+        return Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter)
 
     def _next_turn(self) -> float:
         """Return when Python sets the velocity of the piston next [time], ``inf`` if it never does."""
@@ -278,7 +249,7 @@ class ParcelSet(Parcel):
 
     def _gas(self) -> Gas:
         """Return all data of the kernels, with the present cells."""
-        made: Gas = as_laid_out(self._data(), self._layout, self._modes)
+        made: Gas = layout.as_laid_out(self._data(), self._layout, self._modes)
         return made
 
     @property
@@ -306,12 +277,13 @@ class ParcelSet(Parcel):
     def _make_room(self) -> None:
         """Make memory for longer rows; where that does not help, choose other cells, or else rows without copies."""
         due = self._layout.due[0]
-        if due in (CHOOSE, FOLLOW):
-            self._crowded |= bool(due == FOLLOW)
+        if due in (layout.CHOOSE, layout.FOLLOW):
+            self._crowded |= bool(due == layout.FOLLOW)
             self._choose()
             return
-        cells, old = math.prod(self._layout.shape[NUMBER : NUMBER + 3].tolist()), self._cells.row
-        row = new_rows(cells * int(stride_of(self._layout, self._modes)) * (2 if due == LENGTHEN else 1))
+        cells, old = math.prod(self._layout.shape[layout.NUMBER : layout.NUMBER + 3].tolist()), self._cells.row
+        words = cells * int(layout.stride_of(self._layout, self._modes))
+        row = layout.new_rows(2 * words if due == layout.LENGTHEN else words)
         row[: old.size] = old
         copies = self._cells.copies._replace(value=row.view(np.float32), occupied=row.view(np.int64))
         self._cells = self._cells._replace(row=row, copies=copies)
@@ -323,9 +295,9 @@ class ParcelSet(Parcel):
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
         contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
         shape, filled = np.array([FEWEST, 0, 0, 0, 0, 0, 0]), np.array([self.ceiling])
-        self._layout = Layout(shape, np.array([PLACE]), filled, np.zeros((3, 1)), self._size_radius, None)
+        self._layout = layout.Layout(shape, np.array([layout.PLACE]), filled, np.zeros((3, 1)), self._size_radius, None)
         rows = contacts and not self._crowded
-        rows = rows and bool(choose_cells(self.ceiling, n, self._box, moving, self._layout))
+        rows = rows and bool(layout.choose_cells(self.ceiling, n, self._box, moving, self._layout))
         grid = None
         if not rows:
             grid = choose_grid(
@@ -358,25 +330,25 @@ class ParcelSet(Parcel):
         self._find_kernels()
         self._events, self._calendar = aligned_records(n, EVENT), new_calendar(n)
         radius = 0.5 * float(self.diameter.mean()) if self.diameter.size else 0.0
-        most = int(shape[NUMBER : NUMBER + 3].max()) if rows else 1
-        self._cells = new_cells(self._events, len(self._size_radius), 0, most, radius, self._epoch_length)
+        most = int(shape[layout.NUMBER : layout.NUMBER + 3].max()) if rows else 1
+        self._cells = layout.new_cells(self._events, len(self._size_radius), 0, most, radius, self._epoch_length)
         if grid is not None:
             self._cells = self._cells._replace(boundary=grid.boundary, first=grid.first, span=grid.span)
             return
         self._layout = self._layout._replace(edge=np.zeros((3, most + 1)), column=self._column(kT, bath, weight))
-        write_cells(self._gas(), self._layout, self._modes)
+        layout.write_cells(self._gas(), self._layout, self._modes)
         if self._layout.column.wanted:
-            write_column(kT, self._gas(), self._layout, self._modes)
+            layout.write_column(kT, self._gas(), self._layout, self._modes)
 
-    def _column(self, kT: float, bath: float, weight: float) -> Column:
+    def _column(self, kT: float, bath: float, weight: float) -> layout.Column:
         """Return the data from which the layers of a column are chosen: none are wanted without gravity."""
-        n, layers = len(self._fields), int(self._layout.shape[NUMBER + 2])
+        n, layers = len(self._fields), int(self._layout.shape[layout.NUMBER + 2])
         wanted = layers if layers > 1 and weight > 0.0 and max(kT, bath) > 0.0 else 0
         width = widths_for_rows(
             self._sides[0], self._sides[1], self.ceiling, float(self._size_radius.min()), n, self._planar
         )
         thinnest = max(2.002 * float(self._size_radius.max()) * MARGIN, 0.05 * width[2])
-        return Column(weight, bath, wanted, thinnest, np.zeros(layers, np.int64), np.zeros(layers + 1))
+        return layout.Column(weight, bath, wanted, thinnest, np.zeros(layers, np.int64), np.zeros(layers + 1))
 
     def _find_kernels(self) -> None:
         _, _, self._replan, self._overlap, _ = specialise(self._modes)

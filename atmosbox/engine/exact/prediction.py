@@ -6,7 +6,7 @@ by `soonest_in_cell` where they are lists of molecules.
 """
 
 import math
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -14,31 +14,16 @@ from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.pair import approach, nearest_image, predict, reach, soonest_image
 from atmosbox.engine.exact.calendar import schedule
-from atmosbox.engine.exact.cells import overlapped
+from atmosbox.engine.exact.cells import overlapped, side
 from atmosbox.engine.exact.encounter import size_and_radius, slots_of
 from atmosbox.engine.exact.search import CONTACT, search
-
-__all__ = ["CEILING", "CONTACT", "Meeting", "call", "limits", "next_move", "plan", "side", "soonest_in_cell"]
 
 CEILING = 7
 """An event with a moving ceiling. 0 to 5 is a boundary or a wall (2 * axis, plus 1 for the upper side), 6 a contact."""
 
 
-class Meeting(NamedTuple):
+class Meeting(namedtuple("Meeting", "after partner")):
     """The soonest contact found so far: the time until then [time], and the partner, -1 for none."""
-
-    after: float
-    partner: int
-
-
-@kernel
-def side(axis, box):
-    """Return the length of the box along an axis [length], and its inverse if the axis is periodic, else 0."""
-    if axis == 0:
-        return box.length_x, box.inverse_x
-    if axis == 1:
-        return box.length_y, box.inverse_y
-    return box.length_z, box.inverse_z
 
 
 @kernel

@@ -128,21 +128,11 @@ class Reference:
     """
 
     def __init__(
-        self,
-        position: ArrayLike,
-        velocity: ArrayLike,
-        *,
-        length: Sequence[float],
-        walls: Sequence[Wall] = (Specular(),) * 6,
-        mass: ArrayLike = 1.0,
-        diameter: ArrayLike = 1.0,
-        rotation: ArrayLike = 0.0,
-        rotational_energy: ArrayLike = 0.0,
-        gravity: float = 0.0,
-        planar: bool = False,
-        collision_number: float = 1.0,
-        seed: int = 0,
-    ) -> None:
+        self, position: ArrayLike, velocity: ArrayLike, *, length: Sequence[float],
+        walls: Sequence[Wall] = (Specular(),) * 6, mass: ArrayLike = 1.0, diameter: ArrayLike = 1.0,
+        rotation: ArrayLike = 0.0, rotational_energy: ArrayLike = 0.0, gravity: float = 0.0, planar: bool = False,
+        collision_number: float = 1.0, seed: int = 0,
+    ) -> None:  # fmt: skip
         self.time = 0.0
         self.position: Array = np.array(position, np.float64)
         self.velocity: Array = np.array(velocity, np.float64)
@@ -150,6 +140,9 @@ class Reference:
         self.length: Array = np.array(length, np.float64)
         self.walls = new_walls(tuple(walls), float(length[2]))
         self.periodic = [bool(law == PERIODIC) for law in self.walls.law[::2]]
+        # until one of them crosses a boundary, two molecules of a periodic box meet inside it or across its sides
+        turns = [(-1.0, 0.0, 1.0) if periodic else (0.0,) for periodic in self.periodic]
+        self.images = self.length * np.array(list(itertools.product(*turns)))
         self.mass, self.diameter, self.rotation, self.rotational_energy = (
             np.array(np.broadcast_to(np.asarray(values, np.float64), self.number))
             for values in (mass, diameter, rotation, rotational_energy)
@@ -202,21 +195,23 @@ class Reference:
                 yield Event(self.time + time_to_close(0.5 * acceleration, speeds[i], gaps[i]), kind, i, wall)
 
     def _contacts(self) -> Iterator[Event]:
-        # until one of them crosses a boundary, two molecules of a periodic box meet inside it or across its sides
-        turns = [(-1.0, 0.0, 1.0) if periodic else (0.0,) for periodic in self.periodic]
-        images = self.length * np.array(list(itertools.product(*turns)))
-        for i in range(self.number):
-            for j in range(i + 1, self.number):
-                distance = reach(0.5 * self.diameter[i], 0.5 * self.diameter[j])
-                if distance == 0.0:
-                    continue  # points never collide
-                v = self.velocity[i] - self.velocity[j]
-                r = self.position[i] - self.position[j] + images
-                speed_squared = float(v @ v)
-                slopes = (2.0 * r @ v).tolist()
-                gaps = (np.sum(r * r, axis=1) - distance**2).tolist()
-                for slope, gap in zip(slopes, gaps, strict=True):
-                    yield Event(self.time + time_to_close(speed_squared, slope, gap), "contact", i, j)
+        for i, j in itertools.combinations(range(self.number), 2):
+            distance = reach(0.5 * self.diameter[i], 0.5 * self.diameter[j])
+            if distance == 0.0:
+                continue  # points never collide
+            v = self.velocity[i] - self.velocity[j]
+            r = self.position[i] - self.position[j] + self.images
+            slopes, gaps = 2.0 * r @ v, np.sum(r * r, axis=1) - distance**2
+            for slope, gap in zip(slopes.tolist(), gaps.tolist(), strict=True):
+                yield Event(self.time + time_to_close(float(v @ v), slope, gap), "contact", i, j)
+
+    def relative(self, i: int, j: int) -> Array:
+        """Return the position of molecule i relative to the nearest image of j [length]."""
+        r: Array = self.position[i] - self.position[j]
+        for axis in range(3):
+            if self.periodic[axis]:
+                r[axis] = nearest_along(r[axis], self.length[axis], 1.0 / self.length[axis])
+        return r
 
     def place(self, wall: int) -> float:
         """Return the coordinate of a wall now [length]."""
@@ -258,10 +253,7 @@ class Reference:
         )  # fmt: skip
 
     def _meet(self, i: int, j: int) -> None:
-        r = self.position[i] - self.position[j]
-        for axis in range(3):
-            if self.periodic[axis]:
-                r[axis] = nearest_along(r[axis], self.length[axis], 1.0 / self.length[axis])
+        r = self.relative(i, j)
         before = self.velocity[i] - self.velocity[j]
         mass, other_mass = self.mass[i], self.mass[j]
         after = before + (1.0 + mass / other_mass) * np.array(resolve(*r, *before, mass, other_mass))

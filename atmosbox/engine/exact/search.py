@@ -5,7 +5,7 @@ searches only the rows of these. One function does both, so that the search is c
 out of the cells that it no longer overlaps, because leaving a cell is not an event.
 """
 
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -41,36 +41,16 @@ _OTHERS = (1 << 64 - BATCH) - 1
 """The bits that remain in a word of occupied places when those of one block are shifted out."""
 
 
-class Seeker(NamedTuple):
+class Seeker(namedtuple("Seeker", "t at radius fall velocity since slack")):
     """A molecule that searches for partners, and what the quick test of `screen` needs of it."""
 
-    t: float
-    """The time."""
-    at: Motion
-    """Its position and velocity at this time."""
-    radius: float
-    fall: float
-    """How much higher it is in the frame that falls with gravity from the start of the epoch [length]."""
-    velocity: Any
-    """Its velocity in that frame, in single precision."""
-    since: Any
-    """The time since the start of the epoch, in single precision."""
-    slack: Any
-    """By how much the quick test may be wrong, so that no contact is missed."""
 
-
-class Found(NamedTuple):
+class Found(namedtuple("Found", "at slots after partner full")):
     """The result of a search.
 
     The `Motion` of the molecule, brought back into a periodic box; its slots; the time until its soonest contact [time]
     and the partner, -1 if that contact was known before or there is none; whether a row had no place for the molecule.
     """
-
-    at: Any
-    slots: Any
-    after: float
-    partner: int
-    full: bool
 
 
 @kernel

@@ -5,13 +5,13 @@ gas is computed from the tallies here, and the next move of all molecules that m
 """
 
 import math
+from collections import namedtuple
 from enum import IntEnum
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.core.lift import Gauges, Lift, ceiling_velocity
+from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
 from atmosbox.engine.exact.prediction import CEILING, limits, next_move
@@ -21,7 +21,7 @@ LOWEST, HIGHEST = 0.6, 1.5
 """Lowest and highest ceiling, relative to its height when the cells were laid out; beyond, they are laid out again."""
 
 
-class Ascent(NamedTuple):
+class Ascent(namedtuple("Ascent", "lift turns filled lowest start_energy gravity_work freedom diameter")):
     """The data that the kernels need for a piston that follows a pressure.
 
     ``lift``: the law; ``turns : (1,)``: how often the velocity of the piston has been set; ``filled``: the height for
@@ -29,15 +29,6 @@ class Ascent(NamedTuple):
     energy from changes of gravity [energy]; degrees of freedom of a molecule of dry air, and the diameter of all
     [length].
     """
-
-    lift: Lift
-    turns: Any
-    filled: float
-    lowest: float
-    start_energy: float
-    gravity_work: float
-    freedom: float
-    diameter: float
 
 
 class Next(IntEnum):

@@ -27,7 +27,6 @@ from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.liquid.drop_shape import (
-    DropRecords,
     about,
     given_by_surface,
     leaving_rates,
@@ -41,8 +40,6 @@ from atmosbox.engine.liquid.drop_shape import (
 from atmosbox.engine.liquid.insertion import Place, enter, has_room, move_to, place_at, take_out, withdraw
 from atmosbox.engine.liquid.moist import ceiling_at, renew
 from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, stays, wait
-
-__all__ = ["DropRecords", "specialise"]
 
 _LEAVES = 1
 
@@ -99,7 +96,7 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     z = within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
     x, y, z, moved = move_to(i, x, y, z, gas, modes)
     if not moved:
-        return Status.ROW_FULL, i
+        return Status.FULL, i
     reservoir.energy[THERMAL] += 0.5 * mass * share * (ux * ux + uy * uy + uz * uz)
     if not drops.plain:
         # one drop has less surface than two
@@ -199,7 +196,7 @@ def _emit(t, gas, drops, reservoir, modes):
     if found != Place.FREE:
         drops.held[k] += 1
         resize(drops, k, gas.kinds, modes)
-        return Status.ROW_FULL if found == Place.ROW_FULL else Status.DONE, j
+        return Status.FULL if found == Place.ROW_FULL else Status.DONE, j
     mass, heavy = drops.molecule_mass, table[modes.drops + k].mass
     light = mass / (mass + heavy)
     if not drops.plain:

@@ -10,9 +10,9 @@ from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.core.state import KIND, MOLECULE, Kinds, aligned_records
+from atmosbox.engine.core.state import KIND, Kinds, aligned_records
 from atmosbox.engine.exact.cells import size_classes
-from atmosbox.engine.liquid.drop import DropRecords
+from atmosbox.engine.liquid.drop_shape import DropRecords
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.substance import Drops, Liquid
 
@@ -24,7 +24,7 @@ class DropParcelSet(MoistParcelSet):
     --------
     A nucleus catches a vapour molecule that hits it, and the molecule evaporates again:
 
-    >>> from atmosbox.engine.liquid.reservoir import Substance
+    >>> from atmosbox.engine import Substance
     >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> drops = Drops(water, nuclei=5.0, position=((3.0, 3.0, 3.0),))
     >>> facts = {"length": (6, 6, 6), "mass": [0.62, 1.0], "rotation": [3.0, 2.0]}
@@ -48,13 +48,14 @@ class DropParcelSet(MoistParcelSet):
         held = np.full(number, more // number, np.int64)
         held[: more % number] += 1
         self._append_liquid()
-        waters = more + int(np.sum(self._is_vapour()[: len(position)]))
+        kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
+        self._open_reservoir(kinds.table["mass"], 2.0 * kinds.table["radius"], kinds.table["rotation"], kind)
+        self._reservoir.surface[0] = 0.0
         cubes = [length * length * length for length in liquid.nuclei_radii]
         ball = liquid.molecule_radius * liquid.molecule_radius * liquid.molecule_radius
-        largest = float(cbrt(math.fsum(cubes) + waters * ball))
+        largest = float(cbrt(math.fsum(cubes) + self._vapours * ball))
         radius: Array = np.array([float(cbrt(cube + each * ball)) for cube, each in zip(cubes, held, strict=True)])
         where = self._checked(np.array(liquid.position, float), radius, largest)
-        kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
         self._first_drop = len(kinds.table)
         table = aligned_records(self._first_drop + number, KIND)
         table[: self._first_drop] = kinds.table
@@ -65,15 +66,9 @@ class DropParcelSet(MoistParcelSet):
         spin = np.concatenate([rotational_energy, np.zeros(more + number)]) if self._rotates else np.zeros(1)
         self._kinds = Kinds(table, spin)
         records = len(position) + more + number
-        self._molecules = aligned_records(records, MOLECULE)
-        self._fields = self._molecules.view(np.ndarray)
-        nowhere = np.zeros((more, 3))
-        places = np.concatenate([position, nowhere, where])
-        speeds = np.concatenate([velocity, nowhere, np.zeros((number, 3))])
-        for axis, name in enumerate("xyz"):
-            self._fields[name] = places[:, axis]
-            self._fields["v" + name] = speeds[:, axis]
-        self._fields["kind"] = np.concatenate([kind, self._first_drop + np.arange(number)])
+        places = np.concatenate([position, np.zeros((more, 3)), where])
+        speeds = np.concatenate([velocity, np.zeros((more + number, 3))])
+        self._write(places, speeds, np.concatenate([kind, self._first_drop + np.arange(number)]))
         self._fields["clock"][len(position) : len(position) + more] = np.inf
         self._drops = DropRecords(
             record=np.arange(records - number, records),
@@ -90,16 +85,6 @@ class DropParcelSet(MoistParcelSet):
             tension=float(liquid.surface_tension),
             plain=not (liquid.surface_tension > 0.0 or any(liquid.particles)),
         )
-        alike = self._is_vapour()
-        first = int(kind[np.argmax(alike)]) if alike.any() else -1
-        self._open_reservoir(np.arange(self._first_drop) == first, kind)
-        self._reservoir.surface[0] = 0.0
-
-    def _is_vapour(self) -> NDArray[np.bool_]:
-        """Return which molecules have the properties of the substance of the liquid."""
-        substance = self._liquid.substance
-        alike = (self._mass == substance.mass) & (self._rotation == substance.rotation)
-        return np.asarray(alike & (self._diameter == substance.diameter))
 
     def _checked(self, where: Array, radius: Array, largest: float) -> Array:
         """Return the centres of the drops, or refuse them."""
@@ -129,12 +114,7 @@ class DropParcelSet(MoistParcelSet):
     def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Return centres [length], radii [length] and numbers of molecules of the present drops."""
         alive = self._drops.alive == 1
-        m = self._fields[self._drops.record[alive]]
-        dt = self._now - m["clock"]
-        centre = np.stack([m[axis] + dt * m["v" + axis] for axis in "xyz"], axis=1)
-        for axis in range(3):
-            if self._periodic[axis]:
-                centre[:, axis] = np.mod(centre[:, axis], self._sides[axis])
+        centre, _ = self._flown(self._fields[self._drops.record[alive]])
         return centre, np.array(self._kinds.table["radius"][self._first_drop :][alive]), self._drops.held[alive]
 
     @property
@@ -146,7 +126,7 @@ class DropParcelSet(MoistParcelSet):
     def surface_energy(self) -> float:
         """Energy of the surface of all drops [energy]."""
         radius = self._kinds.table["radius"][self._first_drop :][self._drops.alive == 1]
-        return 4.0 * math.pi * self._drops.tension * float(np.sum(radius * radius))
+        return float(4.0 * math.pi * self._drops.tension * np.sum(radius * radius))
 
     @property
     def merged(self) -> int:

@@ -19,7 +19,7 @@ Koehler, H. (1936), The nucleus in and the growth of hygroscopic droplets, doi:1
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 from atmosbox.engine.core.elementary import cbrt, circle
 from atmosbox.engine.core.jit import kernel
@@ -57,7 +57,12 @@ def leaving_rates(drops, reservoir):
     return total
 
 
-class DropRecords(NamedTuple):
+class DropRecords(
+    namedtuple(
+        "DropRecords",
+        "record held cube core alive solute rate merged molecule_cube molecule_mass molecule_radius tension plain",
+    )
+):
     """The data of the drops beside their motion.
 
     ``record``, ``held : (drop,)``: their indices among the molecules, and the number of molecules in each; ``cube``,
@@ -67,20 +72,6 @@ class DropRecords(NamedTuple):
     the radius in a drop, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether the
     rate at which drops lose molecules depends on their surface area alone.
     """
-
-    record: Any
-    held: Any
-    cube: Any
-    core: Any
-    alive: Any
-    solute: Any
-    rate: Any
-    merged: Any
-    molecule_cube: float
-    molecule_mass: float
-    molecule_radius: float
-    tension: float
-    plain: bool
 
 
 @kernel

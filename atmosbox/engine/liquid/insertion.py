@@ -7,13 +7,11 @@ reads infinity; predictions of contacts with it are stale.
 import math
 from enum import IntEnum
 
-import numpy as np
-
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.exact.calendar import schedule
-from atmosbox.engine.exact.cells import overlapped, slot_at
+from atmosbox.engine.exact.cells import overlapped, side, slots_at, turns_past
 from atmosbox.engine.exact.encounter import size_and_radius, slots_of, write
 from atmosbox.engine.exact.membership import Change, change, listed, places, row_of
 from atmosbox.engine.exact.prediction import call
@@ -43,16 +41,10 @@ def _is_near(j, t, x, y, z, distance, gas, modes):
 
 
 @kernel
-def place_at(i, t, x, y, z, gas, modes):
-    """Return a `Place`: whether molecule i can be put at x, y, z; store its slots there."""
+def _is_free(ignored, t, at, radius, size, slots, gas, modes):
+    """Return whether a sphere of this radius at x, y, z, in the cells of three slots, overlaps none but two ignored."""
     cells = gas.cells
-    size, radius = size_and_radius(i, gas, modes)
-    cells.slot[i, 0] = slot_at(x, size, 0, cells.last_slot_x, cells, modes)
-    cells.slot[i, 1] = slot_at(y, size, 1, cells.last_slot_y, cells, modes)
-    cells.slot[i, 2] = slot_at(z, size, 2, cells.last_slot_z, cells, modes)
-    if not modes.contacts:
-        return Place.FREE
-    slots = slots_of(i, gas)
+    x, y, z = at
     first_x, span_x = overlapped(slots[0], size, 0, cells, modes)
     first_y, span_y = overlapped(slots[1], size, 1, cells, modes)
     first_z, span_z = overlapped(slots[2], size, 2, cells, modes)
@@ -62,65 +54,60 @@ def place_at(i, t, x, y, z, gas, modes):
                 start = row_of(a, b, c, cells)
                 for place in range(places(start, cells, modes)):
                     j = listed(start, place, cells, modes)
-                    if j >= 0:
-                        _, other_radius = size_and_radius(j, gas, modes)
-                        if _is_near(j, t, x, y, z, reach(radius, other_radius), gas, modes):
-                            return Place.TAKEN
+                    if j < 0 or j in ignored:
+                        continue
+                    _, other_radius = size_and_radius(j, gas, modes)
+                    if _is_near(j, t, x, y, z, reach(radius, other_radius), gas, modes):
+                        return False
+    return True
+
+
+@kernel
+def place_at(i, t, x, y, z, gas, modes):
+    """Return a `Place`: whether molecule i can be put at x, y, z; store its slots there."""
+    cells = gas.cells
+    size, radius = size_and_radius(i, gas, modes)
+    slots = slots_at(x, y, z, size, cells, modes)
+    cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = slots
+    if not modes.contacts:
+        return Place.FREE
+    if not _is_free((i, i), t, (x, y, z), radius, size, slots, gas, modes):
+        return Place.TAKEN
     return Place.ROW_FULL if change(Change.TEST, i, size, slots, cells, modes) else Place.FREE
 
 
 @kernel
 def has_room(i, j, t, at, radius, gas, modes):
     """Return whether drop j, whose `Motion` is ``at``, would overlap no molecule but i with another radius."""
-    cells, table = gas.cells, gas.kinds.table
-    size = np.int64(table[gas.molecules[j].kind].size_class)
-    slots = slots_of(j, gas)
-    first_x, span_x = overlapped(slots[0], size, 0, cells, modes)
-    first_y, span_y = overlapped(slots[1], size, 1, cells, modes)
-    first_z, span_z = overlapped(slots[2], size, 2, cells, modes)
-    for a in range(first_x, first_x + span_x):
-        for b in range(first_y, first_y + span_y):
-            for c in range(first_z, first_z + span_z):
-                start = row_of(a, b, c, cells)
-                for place in range(places(start, cells, modes)):
-                    other = listed(start, place, cells, modes)
-                    if other < 0 or other in (i, j):
-                        continue
-                    distance = reach(radius, table[gas.molecules[other].kind].radius)
-                    if _is_near(other, t, at.x, at.y, at.z, distance, gas, modes):
-                        return False
-    return True
+    size, _ = size_and_radius(j, gas, modes)
+    return _is_free((i, j), t, (at.x, at.y, at.z), radius, size, slots_of(j, gas), gas, modes)
 
 
 @kernel
 def move_to(i, x, y, z, gas, modes):
     """Move molecule i to the cells of another place; return that place in the periodic box; and if rows had room."""
-    cells, box = gas.cells, gas.box
+    cells = gas.cells
     size, _ = size_and_radius(i, gas, modes)
-    if box.inverse_x != 0.0:
-        x -= math.floor((x - cells.boundary[size, 0, 0]) / box.length_x) * box.length_x
-    if box.inverse_y != 0.0:
-        y -= math.floor((y - cells.boundary[size, 1, 0]) / box.length_y) * box.length_y
-    if box.inverse_z != 0.0:
-        z -= math.floor((z - cells.boundary[size, 2, 0]) / box.length_z) * box.length_z
-    old = slots_of(i, gas)
-    new = (
-        slot_at(x, size, 0, cells.last_slot_x, cells, modes),
-        slot_at(y, size, 1, cells.last_slot_y, cells, modes),
-        slot_at(z, size, 2, cells.last_slot_z, cells, modes),
-    )
+    x -= turns_past(x, 0, size, gas)
+    y -= turns_past(y, 1, size, gas)
+    z -= turns_past(z, 2, size, gas)
+    new = slots_at(x, y, z, size, cells, modes)
     if change(Change.TEST, i, size, new, cells, modes):
         return x, y, z, False
-    change(Change.REMOVE, i, size, old, cells, modes)
+    change(Change.REMOVE, i, size, slots_of(i, gas), cells, modes)
     change(Change.ADD, i, size, new, cells, modes)
     cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = new
     return x, y, z, True
 
 
 @kernel
-def _between(low, high, state):
-    """Draw a coordinate between two others."""
-    return low + (high - low) * uniform(state)
+def _anywhere(axis, length, size, radius, gas, modes):
+    """Draw a coordinate: between two walls as far as the radius allows, or anywhere along a periodic axis."""
+    low, high = radius, length - radius
+    if modes.periodic and side(axis, gas.box)[1] != 0.0:
+        low = gas.cells.boundary[size, axis, 0]
+        high = low + length
+    return low + (high - low) * uniform(gas.tallies.random)
 
 
 @kernel
@@ -129,27 +116,13 @@ def find_place(i, t, ceiling, gas, modes):
 
     With a pool the place is on the floor, otherwise anywhere.
     """
-    cells, box, state = gas.cells, gas.box, gas.tallies.random
     size, radius = size_and_radius(i, gas, modes)
-    low_x, high_x = radius, box.length_x - radius
-    low_y, high_y = radius, box.length_y - radius
-    low_z, high_z = radius, ceiling - radius
-    if modes.periodic:
-        if box.inverse_x != 0.0:
-            low_x = cells.boundary[size, 0, 0]
-            high_x = low_x + box.length_x
-        if box.inverse_y != 0.0:
-            low_y = cells.boundary[size, 1, 0]
-            high_y = low_y + box.length_y
-        if box.inverse_z != 0.0:
-            low_z = cells.boundary[size, 2, 0]
-            high_z = low_z + ceiling
     x = y = z = 0.0
     found = Place.TAKEN
     for _ in range(1000):
-        x = _between(low_x, high_x, state)
-        y = _between(low_y, high_y, state)
-        z = low_z if modes.pool else _between(low_z, high_z, state)
+        x = _anywhere(0, gas.box.length_x, size, radius, gas, modes)
+        y = _anywhere(1, gas.box.length_y, size, radius, gas, modes)
+        z = radius if modes.pool else _anywhere(2, ceiling, size, radius, gas, modes)
         found = place_at(i, t, x, y, z, gas, modes)
         if found != Place.TAKEN:
             break

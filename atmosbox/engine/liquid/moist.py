@@ -9,8 +9,9 @@ largest speed of all, and a meeting is accepted with a probability proportional 
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
-from atmosbox.engine.exact.turning import Ascent, Next, ahead, gauges, turn
+from atmosbox.engine.exact.turning import Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, enter, find_place, withdraw
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
@@ -30,10 +31,9 @@ from atmosbox.engine.liquid.reservoir import (
     THERMAL,
     condense,
     direction,
-    evaporate,
+    emitted,
     evaporation_rate,
     exchange,
-    leave,
     rain_out,
     stays,
     wait,
@@ -42,16 +42,12 @@ from atmosbox.engine.liquid.reservoir import (
 _MAY_MEET, _LEAVES, _RAINS = range(3)
 
 
-class MoistAscent(NamedTuple):
+class MoistAscent(namedtuple("MoistAscent", "dry vapours rotations")):
     """The data that the kernels need for moist air under a piston that follows a pressure.
 
     ``dry``: the data for any air; ``vapours``: the number of molecules of vapour and liquid; ``rotations``: the
     rotational degrees of freedom of all molecules together.
     """
-
-    dry: Ascent
-    vapours: int
-    rotations: float
 
 
 @kernel
@@ -171,19 +167,10 @@ def _emit(t, gas, reservoir, modes):
     height, rise = ceiling_at(t, gas, modes)
     found, x, y, z = find_place(i, t, height, gas, modes)
     if found != Place.FREE:
-        return Status.CROWDED if found == Place.TAKEN else Status.ROW_FULL
+        return Status.CROWDED if found == Place.TAKEN else Status.FULL
     mass = gas.kinds.table[reservoir.kind].mass
     flow = 0.0 if modes.pool else rise * z / height
-    flight, spin = evaporate(reservoir, state)
-    speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = direction(modes.pool, state)
-    vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
-    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
-        # only the last molecule can lack the energy of the flow: it leaves as if the air were at rest
-        vz = speed * ez
-        energy = flight + spin
-    leave(reservoir, energy)
+    (vx, vy, vz), spin, speed = emitted(mass, flow, modes.pool, reservoir, state)
     if modes.pool:
         gas.tallies.impulse[4] += mass * vz
     enter(i, t, Motion(x, y, z, vx, vy, vz), spin, gas, reservoir, modes)

@@ -5,22 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.parcel import Array, Parcel
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.walls import POOL, SPECULAR
-from atmosbox.engine.liquid.reservoir import (
-    CONDENSED,
-    EVAPORATED,
-    LIQUID,
-    RAINED,
-    RAINED_ENERGY,
-    STICKING,
-    THERMAL,
-    Reservoir,
-    cover,
-    new_reservoir,
-)
+from atmosbox.engine.liquid import reservoir
 from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
 
@@ -32,7 +20,7 @@ class MoistAccount(Parcel):
     """
 
     _liquid: Liquid
-    _reservoir: Reservoir
+    _reservoir: reservoir.Reservoir
     _vapours: int
     _rotations: float
 
@@ -59,13 +47,18 @@ class MoistAccount(Parcel):
         self._rotates = self._rotates or (bool(more) and substance.rotation > 0.0)
         self._same_size = bool(len(self._diameter)) and np.ptp(self._diameter) == 0.0
 
-    def _open_reservoir(self, alike: NDArray[np.bool_], kind: NDArray[np.integer]) -> None:
+    def _open_reservoir(self, mass: Array, diameter: Array, rotation: Array, kind: NDArray[np.integer]) -> None:
         """Make the reservoir of the liquid.
 
-        ``alike : (kind,)`` tells which kinds have the properties of the substance, ``kind : (molecule,)`` is the kind
-        of each molecule.
+        Parameters
+        ----------
+        mass, diameter, rotation : (kind,)
+            Mass [mass], diameter [length] and rotational degrees of freedom of each kind of molecule.
+        kind : (molecule,)
+            The kind of each molecule.
         """
         liquid, substance = self._liquid, self._liquid.substance
+        alike = (mass == substance.mass) & (diameter == substance.diameter) & (rotation == substance.rotation)
         vapour = int(np.flatnonzero(alike)[0]) if alike.any() else -1
         self._vapours = int(np.sum(kind == vapour))
         cube = float(np.mean(self._diameter * self._diameter * self._diameter)) if len(kind) else 0.0
@@ -76,8 +69,9 @@ class MoistAccount(Parcel):
         elif isinstance(liquid, Pool):
             area = float(sides[0] * sides[1])
         present = len(kind) - int(liquid.number)
-        rotation = float(substance.rotation) if self._rotates else 0.0
-        self._reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)._replace(rotation=rotation)
+        self._reservoir = reservoir.new_reservoir(liquid, area, len(kind), present, vapour, cube)
+        if not self._rotates:
+            self._reservoir = self._reservoir._replace(rotation=0.0)
         self._rotations = float(self._rotation.sum())
 
     def set_open_pool(self, share: float) -> None:
@@ -100,7 +94,7 @@ class MoistAccount(Parcel):
         Examples
         --------
         >>> from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-        >>> from atmosbox.engine.liquid.reservoir import Substance
+        >>> from atmosbox.engine import Substance
         >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
         >>> liquid = Pool(water, number=5, kT=1.0)
         >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)
@@ -112,7 +106,7 @@ class MoistAccount(Parcel):
         """
         if not isinstance(self._liquid, Pool):
             raise RefusedError("the liquid of this box is not a pool, and only a pool can be covered: make it a Pool")
-        cover(self._reservoir, number(share, "open share of the pool", least=0.0, most=1.0))
+        reservoir.cover(self._reservoir, number(share, "open share of the pool", least=0.0, most=1.0))
         self._reservoir_changes()
 
     def _reservoir_changes(self) -> None:
@@ -126,12 +120,12 @@ class MoistAccount(Parcel):
     @property
     def sticking(self) -> float:
         """Fraction of the vapour molecules that hit the liquid now and stay; less if a part of a pool is covered."""
-        return float(self._reservoir.rates[STICKING])
+        return float(self._reservoir.rates[reservoir.STICKING])
 
     @property
     def liquid(self) -> int:
         """Number of molecules in the liquid."""
-        return int(self._reservoir.count[LIQUID])
+        return int(self._reservoir.count[reservoir.LIQUID])
 
     @property
     def vapour(self) -> int:
@@ -141,35 +135,34 @@ class MoistAccount(Parcel):
     @property
     def condensed(self) -> int:
         """Number of molecules that have entered the liquid since the start."""
-        return int(self._reservoir.count[CONDENSED])
+        return int(self._reservoir.count[reservoir.CONDENSED])
 
     @property
     def evaporated(self) -> int:
         """Number of molecules that have left the liquid for the vapour since the start."""
-        return int(self._reservoir.count[EVAPORATED])
+        return int(self._reservoir.count[reservoir.EVAPORATED])
 
     @property
     def rained(self) -> int:
         """Number of molecules that have left the box as rain since the start."""
-        return int(self._reservoir.count[RAINED])
+        return int(self._reservoir.count[reservoir.RAINED])
 
     @property
     def liquid_energy(self) -> float:
         """Thermal energy of the liquid [energy]."""
-        return float(self._reservoir.energy[THERMAL])
+        return float(self._reservoir.energy[reservoir.THERMAL])
 
     @property
     def liquid_kT(self) -> float:
         """Temperature of the liquid [energy], NaN if there is neither liquid nor nuclei."""
         capacity = self._reservoir.molecule_capacity * self.liquid + self._reservoir.nuclei
-        return self.liquid_energy / capacity if capacity > 0.0 else math.nan
+        return float(self.liquid_energy / capacity) if capacity > 0.0 else math.nan
 
     @property
     def condensed_energy(self) -> float:
         """Energy of the liquid, of the binding of its vapour, and of the rain [energy]."""
-        return self._reservoir.binding_energy * self.vapour + float(
-            self._reservoir.energy[THERMAL] + self._reservoir.energy[RAINED_ENERGY]
-        )
+        held = self._reservoir.energy[reservoir.THERMAL] + self._reservoir.energy[reservoir.RAINED_ENERGY]
+        return float(self._reservoir.binding_energy * self.vapour + held)
 
     @property
     def present(self) -> NDArray[np.bool_]:
@@ -197,7 +190,7 @@ class MoistAccount(Parcel):
     def degrees_of_freedom(self) -> float:
         """Mean number of translational and rotational degrees of freedom of a molecule of the gas."""
         rotation = self._rotations - self._reservoir.rotation * int(self._reservoir.top[0])
-        return 3.0 + rotation / max(self.number, 1)
+        return float(3.0 + rotation / max(self.number, 1))
 
     @property
     def emitted_energy(self) -> tuple[Array, NDArray[np.int64]]:

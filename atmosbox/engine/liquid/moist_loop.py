@@ -4,28 +4,23 @@ Its kernels take the same arguments as those of a box without liquid, `advance.d
 """
 
 import functools
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.liquid import drop, moist
 from atmosbox.engine.liquid.moist import MoistAscent
-from atmosbox.engine.liquid.reservoir import Reservoir
 
 
-class Moisture(NamedTuple):
+class Moisture(namedtuple("Moisture", "reservoir vapours rotations drops")):
     """The data of the liquid of a box.
 
     ``reservoir`` is the liquid; ``vapours`` the molecules of water in vapour and liquid together, and ``rotations``
     the rotational degrees of freedom of all molecules together; ``drops`` the data of drops that are spheres in the
     box, 0 if there are none.
     """
-
-    reservoir: Reservoir
-    vapours: int
-    rotations: float
-    drops: Any
 
 
 @functools.cache

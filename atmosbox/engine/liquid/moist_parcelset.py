@@ -33,7 +33,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     --------
     A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
-    >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
+    >>> from atmosbox.engine import Mist, Substance
     >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> liquid = Mist(water, number=1, kT=1.0)
     >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)
@@ -56,14 +56,10 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         fastest = float(np.sqrt(np.max(np.sum(velocity * velocity, axis=1), initial=0.0)))
         baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
         warm = math.sqrt(8.0 * max(baths, default=0.0) / self._liquid.substance.mass)
-        self._draw(max(fastest, warm, 2.0 * abs(self.piston_velocity)))
-
-    def _draw(self, speed: float) -> None:
-        """Draw the times of the liquid again, for molecules that may be as fast as ``speed`` [length/time]."""
-        self._draws(self._gas(), self._book(), speed)
+        self._draws(self._gas(), self._book(), max(fastest, warm, 2.0 * abs(self.piston_velocity)))
 
     def _reservoir_changes(self) -> None:
-        self._draw(float(self._reservoir.bound[0]))
+        self._draws(self._gas(), self._book(), float(self._reservoir.bound[0]))
 
     def _piston_turned(self) -> None:
         super()._piston_turned()
@@ -78,7 +74,6 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules of the gas into the arrays, then those of the liquid, which are not in the box."""
-        substance = self._liquid.substance
         present, more = len(position), int(self._liquid.number)
         self._append_liquid()
         nowhere = np.zeros((more, 3))
@@ -88,9 +83,8 @@ class MoistParcelSet(MoistAccount, ParcelSet):
             np.append(rotational_energy, np.zeros(more)),
         )
         self._fields["clock"][present:] = np.inf
-        alike = (self._kinds.table["mass"] == substance.mass) & (self._kinds.table["rotation"] == substance.rotation)
-        alike &= self._kinds.table["radius"] == 0.5 * substance.diameter
-        self._open_reservoir(alike, self._fields["kind"])
+        table = self._kinds.table
+        self._open_reservoir(table["mass"], 2.0 * table["radius"], table["rotation"], self._fields["kind"])
 
     @property
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]

@@ -27,42 +27,14 @@ doi:10.1103/PhysRev.52.295, for the evaporation of neutrons from a hot nucleus.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
 from atmosbox.engine.core.elementary import circle, exp, lgamma, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gamma_of_shape, uniform
-from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
-
-__all__ = [
-    "AIR_MET",
-    "CONDENSED",
-    "EVAPORATED",
-    "LIQUID",
-    "RAINED",
-    "STICKING",
-    "Drops",
-    "Liquid",
-    "Mist",
-    "Pool",
-    "Reservoir",
-    "Substance",
-    "condense",
-    "cover",
-    "direction",
-    "evaporate",
-    "evaporation_flux",
-    "evaporation_rate",
-    "exchange",
-    "heat_capacity",
-    "leave",
-    "new_reservoir",
-    "rain_out",
-    "stays",
-    "wait",
-]
+from atmosbox.engine.liquid.substance import Liquid
 
 LIQUID, CONDENSED, EVAPORATED, RAINED, AIR_MET = range(5)
 """The counts: molecules in the liquid now; since the start, those that entered, left and rained; other hits."""
@@ -79,7 +51,13 @@ _NEVER = -600.0
 """Logarithm of the factor of the evaporation rate of a fully covered pool: so small that no molecule ever leaves."""
 
 
-class Reservoir(NamedTuple):
+class Reservoir(
+    namedtuple(
+        "Reservoir",
+        "energy count clock bound absent top spectrum surface rates bin_width log_rate area binding_energy "
+        "molecule_capacity nuclei sticking rain keeps rotation diameter mean_cube kind",
+    )
+):
     """The liquid in the form that the kernels take.
 
     ``energy : (2,)`` [energy] and ``count : (5,)``: see `THERMAL` and `LIQUID`; ``clock : (3,)``: when a molecule
@@ -90,29 +68,6 @@ class Reservoir(NamedTuple):
     ``rates : (2,)``: see `STICKING`; ``log_rate``: the logarithm of Q for the uncovered ``area``;
     then parameters of `Substance` and `Liquid`.
     """
-
-    energy: Any
-    count: Any
-    clock: Any
-    bound: Any
-    absent: Any
-    top: Any
-    spectrum: Any
-    surface: Any
-    rates: Any
-    bin_width: float
-    log_rate: float
-    area: float
-    binding_energy: float
-    molecule_capacity: float
-    nuclei: float
-    sticking: float
-    rain: float
-    keeps: int
-    rotation: float
-    diameter: float
-    mean_cube: float
-    kind: int
 
 
 def new_reservoir(
@@ -267,6 +222,25 @@ def leave(reservoir, energy):
     reservoir.energy[THERMAL] -= energy + reservoir.binding_energy
     reservoir.count[LIQUID] -= 1
     reservoir.count[EVAPORATED] += 1
+
+
+@kernel
+def emitted(mass, flow, pool, reservoir, state):
+    """Remove a molecule from the liquid; return its velocity, its rotational energy, and its speed out of the liquid.
+
+    The liquid moves upwards with the ``flow`` [length/time].
+    """
+    flight, spin = evaporate(reservoir, state)
+    speed = math.sqrt(2.0 * flight / mass)
+    ex, ey, ez = direction(pool, state)
+    vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
+    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
+    if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
+        # only the last molecule can lack the energy of the flow: it leaves as if the air were at rest
+        vz = speed * ez
+        energy = flight + spin
+    leave(reservoir, energy)
+    return (vx, vy, vz), spin, speed
 
 
 @kernel

@@ -4,13 +4,7 @@ import math
 from dataclasses import dataclass
 
 from atmosbox.engine.core.elementary import cbrt, exp, log
-from atmosbox.engine.core.inputs import number, whole
-from atmosbox.engine.core.refusal import RefusedError
-
-
-def _above_zero(value: float, name: str) -> None:
-    if not number(value, name) > 0.0:
-        raise RefusedError(f"{name} = {value} must be above 0")
+from atmosbox.engine.core.refusal import RefusedError, number, whole
 
 
 @dataclass(frozen=True)
@@ -50,7 +44,7 @@ class Substance:
 
     def __post_init__(self) -> None:
         for name in ("mass", "binding_energy", "heat_capacity", "volatility"):
-            _above_zero(getattr(self, name), f"{name} of the substance")
+            number(getattr(self, name), f"{name} of the substance", above=0.0)
         number(self.diameter, "diameter of the substance", least=0.0)
         if self.rotation not in (0.0, 2.0, 3.0):
             raise RefusedError(f"rotation of the substance = {self.rotation}: give 0, 2 or 3 degrees of freedom")
@@ -108,10 +102,7 @@ class Liquid:
         number(self.nuclei, "heat capacity of the nuclei", least=0.0)
         number(self.rain, "rain", least=0.0)
         whole(self.keeps, "number of molecules that the liquid keeps", least=0)
-        if not 0.0 < number(self.sticking, "sticking") <= 1.0:
-            raise RefusedError(
-                f"sticking = {self.sticking} is not above 0 and up to 1: give 1 if all that hit the liquid stay"
-            )
+        number(self.sticking, "sticking", above=0.0, most=1.0)
 
 
 @dataclass(frozen=True)
@@ -131,7 +122,7 @@ class Mist(Liquid):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _above_zero(self.area, "area of the mist")
+        number(self.area, "area of the mist", above=0.0)
 
 
 @dataclass(frozen=True)
@@ -180,13 +171,13 @@ class Drops(Liquid):
         if not self.position:
             raise RefusedError("drops need nuclei: give the position of one at least")
         for radius in self.nuclei_radii:
-            _above_zero(radius, "radius of the nuclei")
+            number(radius, "radius of the nuclei", above=0.0)
         for particles in self.dissolved:
             number(particles, "number of particles dissolved in a drop", least=0.0)
         for name, values in (("radii", self.nuclei_radii), ("numbers of dissolved particles", self.particles)):
             if len(values) != len(self.position):
                 raise RefusedError(f"there are {len(values)} {name} for {len(self.position)} nuclei: give one for each")
-        _above_zero(self.nucleus_mass, "mass of the nuclei")
+        number(self.nucleus_mass, "mass of the nuclei", above=0.0)
         number(self.molecule_radius, "radius of a molecule in a drop", least=0.0)
         number(self.surface_tension, "surface tension of the drops", least=0.0)
         self._refuse_what_is_not_bound()

@@ -1,5 +1,6 @@
 """Positions of the molecules at the start, on a lattice: for packing fractions too high for random positions."""
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -57,7 +58,7 @@ def lattice_positions(
         return np.zeros((0, 3))
     biggest = float(sigma.max())
     room = np.where(periodic, sides, sides - biggest)
-    best: tuple[float, tuple[int, int, int], Array] | None = None
+    best: tuple[float, tuple[int, ...], Array] | None = None
     axes = [0, 2] if planar else [0, 1, 2]
     ideal = float(root(2.0 * n / math.prod(max(float(room[a]), 0.3 * biggest) for a in axes), len(axes)))
     wide = math.sqrt(math.sqrt(3.0))
@@ -70,21 +71,16 @@ def lattice_positions(
         middle = int(room[axis] * ideal * stretch.get(axis, 1.0))
         options = [g for g in range(max(middle - 3, 1), middle + 5) if not periodic[axis] or (g > 0 and g % 2 == 0)]
         choices.append(options or [2])
-    for gx in choices[0]:
-        for gy in choices[1]:
-            for gz in choices[2]:
-                if -(-gx * gy * gz // 2) < n:
-                    continue
-                grid = (gx, gy, gz)
-                step = np.array([room[a] / (g if periodic[a] else max(g - 1, 1)) for a, g in enumerate(grid)])
-                many = [a for a in axes if grid[a] > 1]
-                gaps = [2.0 * step[a] for a in many if grid[a] > 2]
-                gaps += [_diagonal(step[a], step[b]) for k, a in enumerate(many) for b in many[k + 1 :]]
-                if planar and len(many) == 2:
-                    gaps = [_diagonal(step[0], step[2]), *[2.0 * step[a] for a in many if grid[a] > 2]]
-                gap = min(gaps, default=math.inf)
-                if best is None or gap > best[0]:
-                    best = (gap, grid, step)
+    for grid in itertools.product(*choices):
+        if -(-math.prod(grid) // 2) < n:
+            continue
+        step = np.array([room[a] / (g if periodic[a] else max(g - 1, 1)) for a, g in enumerate(grid)])
+        many = [a for a in axes if grid[a] > 1]
+        gaps = [2.0 * step[a] for a in many if grid[a] > 2]
+        gaps += [_diagonal(step[a], step[b]) for a, b in itertools.combinations(many, 2)]
+        gap = min(gaps, default=math.inf)
+        if best is None or gap > best[0]:
+            best = (gap, grid, step)
     if best is None or best[0] < biggest * (1.0 - 1e-12):
         phi = packing_fraction(list(sides), sigma, planar=planar)
         raise PackingError(

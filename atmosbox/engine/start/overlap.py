@@ -1,7 +1,7 @@
 """Which molecules overlap, and how they are moved apart; molecules make room for drops."""
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ _GAP = 1e-6
 """Gap that is left between two that were pushed apart, as a fraction of their distance in contact."""
 
 
-class Spheres(NamedTuple):
+class Spheres(namedtuple("Spheres", "x size radius low high turn inverse order moved moves")):
     """Molecules that are to be placed.
 
     ``x : (molecule, axis)`` are their centres, ``size : (molecule,)`` their radii, ``radius : (molecule,)`` the same
@@ -25,30 +25,13 @@ class Spheres(NamedTuple):
     and ``moves : (molecule,)`` tell which were pushed in the last round, and in this.
     """
 
-    x: Any
-    size: Any
-    radius: Any
-    low: Any
-    high: Any
-    turn: Any
-    inverse: Any
-    order: Any
-    moved: Any
-    moves: Any
 
-
-class Bins(NamedTuple):
+class Bins(namedtuple("Bins", "number origin size head follower")):
     """The bins in which neighbours are searched; each is wider than any pair in contact.
 
     ``number``, ``origin``, ``size : (axis,)``: number of bins, lowest coordinate and extent of all bins; ``head :
     (bin,)`` a molecule in each bin, ``follower : (molecule,)`` the next one in the same bin, -1 for none.
     """
-
-    number: Any
-    origin: Any
-    size: Any
-    head: Any
-    follower: Any
 
 
 def spheres_of(diameter: Array, sides: Array, periodic: tuple[bool, bool, bool], planar: bool) -> Spheres:

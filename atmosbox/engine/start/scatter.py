@@ -40,9 +40,12 @@ def _drawn(i, spheres, scale_height, state):
     return x, y, low[i, 2] + share * height
 
 
-@kernel
-def _places(spheres, bins, scale_height, state):
-    """Place molecules where they overlap none, twice; return False as soon as one finds no place at first."""
+@kernel(entry=True)
+def scatter(spheres, bins, scale_height, state):
+    """Place molecules at random where they overlap none, twice; return False as soon as one finds no place at first.
+
+    ``scale_height`` is 0 in a gas that is spread evenly; ``state : (1,)`` is the state of the random numbers.
+    """
     x, order = spheres.x, spheres.order
     bins.head[:] = -1
     for k in range(2 * order.size):
@@ -94,15 +97,6 @@ def _settle(spheres, bins, scale_height, state):
 
 
 @kernel(entry=True)
-def scatter(spheres, bins, scale_height, state):
-    """Place molecules at random; return whether that was possible: see `random_positions`.
-
-    ``scale_height`` is 0 in a gas that is spread evenly; ``state : (1,)`` is the state of the random numbers.
-    """
-    return _places(spheres, bins, scale_height, state)
-
-
-@kernel(entry=True)
 def crowd(spheres, bins, scale_height, state):
     """Place the molecules of a gas that is too dense for `scatter`: place smaller ones, and let these grow."""
     radius, size = spheres.radius, spheres.size
@@ -115,7 +109,7 @@ def crowd(spheres, bins, scale_height, state):
         for i in range(radius.size):
             radius[i] = share * size[i]
         if not growing:
-            growing = _places(spheres, bins, scale_height, state)
+            growing = scatter(spheres, bins, scale_height, state)
             continue
         if push(spheres, bins, _ROUNDS) > 0:
             for i in range(radius.size):

@@ -4,6 +4,7 @@ Python draws a start with the other functions of this folder. The page of the la
 numbers, for any seed.
 """
 
+from collections import namedtuple
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
@@ -19,16 +20,8 @@ from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rot
 Array = NDArray[np.float64]
 
 
-class _Gas(NamedTuple):
+class _Gas(namedtuple("_Gas", "length diameter mass rotation periodic planar apart")):
     """What the parts of a start depend on: molecules and box; ``apart`` if molecules must not overlap."""
-
-    length: Sequence[float]
-    diameter: Array
-    mass: Array
-    rotation: Array
-    periodic: tuple[bool, bool, bool]
-    planar: bool
-    apart: bool
 
 
 @dataclass(frozen=True, eq=False)

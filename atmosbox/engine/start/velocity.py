@@ -7,21 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.elementary import log_of_normal
-from atmosbox.engine.core.packing import packing_fraction
 from atmosbox.engine.core.random import Source, normal
 from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.start.lattice import lattice_positions
-from atmosbox.engine.start.scatter import random_positions
-
-__all__ = [
-    "equal_speeds",
-    "lattice_positions",
-    "maxwell_velocities",
-    "packing_fraction",
-    "random_positions",
-    "rotational_energies",
-    "two_halves",
-]
 
 Array = NDArray[np.float64]
 

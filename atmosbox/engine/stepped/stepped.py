@@ -41,7 +41,8 @@ The rules that can be chosen:
 
 import functools
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
+from typing import Any
 
 from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.jit import by_reference, kernel
@@ -199,54 +200,28 @@ def collide(high, step, gas, modes):
         _search_cells(high, step, gas, modes)
 
 
-class Step(NamedTuple):
+class Step(namedtuple("Step", "time length ceiling ceiling_velocity motion smooth_walls rule")):
     """One step: its start and length [time], height [length] and velocity of the ceiling at its start, and the rules.
 
     The rules are numbers: ``motion`` for the fall and ``smooth_walls`` (`flight`), ``rule`` for pairs.
     """
 
-    time: float
-    length: float
-    ceiling: float
-    ceiling_velocity: float
-    motion: int
-    smooth_walls: int
-    rule: int
 
-
-class Cells(NamedTuple):
+class Cells(namedtuple("Cells", "number_x number_y number_z largest cell order start")):
     """The cells into which the box is divided, and the molecules sorted by cell.
 
     ``largest`` is the largest radius [length]; ``cell : (molecule,)`` the cell of each; cell c holds the molecules
     ``order[start[c]]`` to ``order[start[c + 1] - 1]``.
     """
 
-    number_x: int
-    number_y: int
-    number_z: int
-    largest: float
-    cell: Any
-    order: Any
-    start: Any
 
-
-class SteppedGas(NamedTuple):
+class SteppedGas(namedtuple("SteppedGas", "position velocity kinds box walls tallies cells made deepest")):
     """The molecules with their box.
 
     ``position``, ``velocity : (molecule, axis)`` [length, length/time]; ``made : (1,)``: energy made by the scheme
     itself [energy]; ``deepest : (3,)``: the deepest overlap at the start, as a share of a diameter, and the two
     molecules. The other parts are described at their types.
     """
-
-    position: Any
-    velocity: Any
-    kinds: Any
-    box: Any
-    walls: Any
-    tallies: Any
-    cells: Cells
-    made: Any
-    deepest: Any
 
 
 @functools.cache

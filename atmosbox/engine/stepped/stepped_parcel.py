@@ -7,18 +7,16 @@ from typing import ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
-from atmosbox.engine.core.refusal import CoarseStepWarning, RefusedError, StalledError, shown
-from atmosbox.engine.core.state import KIND, Kinds, Modes, aligned_records, new_box
+from atmosbox.engine.core.refusal import CoarseStepWarning, RefusedError, StalledError, number, shown
+from atmosbox.engine.core.state import KIND, Kinds, Modes, aligned_records
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.stall import crushing_height, why_crushed
 from atmosbox.engine.stepped.flight import MOTIONS, SMOOTH_WALLS
 from atmosbox.engine.stepped.stepped import INDEX_ORDER, LOOK, LOOK_AHEAD, RULES, Cells, Step, SteppedGas, specialise
 
 _COARSE = 0.1
-_OVERLAP = 1e-9
 _OCCUPANCY = 4.0
 
 
@@ -121,7 +119,6 @@ class SteppedParcel(MarchingParcel):
             gravity=self._gravity > 0.0,
             rotation=self._rotates,
             mixed=mixed,
-            spanning=False,
             periodic=any(self._periodic),
             piston=bool(self._walls.law[5] == PISTON),
         )
@@ -129,23 +126,14 @@ class SteppedParcel(MarchingParcel):
         few = slice(None if mixed else min(n, 1))
         table["mass"][: few.stop], table["radius"][: few.stop] = self._mass[few], 0.5 * self._diameter[few]
         table["rotation"][: few.stop] = self._rotation[few]
-        box = new_box(
-            self._sides, self._periodic, moving=False, gravity=self._gravity, planar=self._planar,
-            exchange=1.0 / self._collision_number, stall=0.0,
-        )  # fmt: skip
         kinds, cells = Kinds(table, rotational_energy if self._rotates else np.zeros(1)), self._new_cells()
         self._gas = SteppedGas(
-            position, velocity, kinds, box, self._walls, self._tallies, cells, made=np.zeros(1), deepest=np.zeros(3)
+            position, velocity, kinds, self._new_box(), self._walls, self._tallies, cells, np.zeros(1), np.zeros(3)
         )
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
         self._find_kernels()
         self._kernel(self._gas, Step(0.0, 0.0, 0.0, 0.0, 0, 0, LOOK), 0, 1)
-        depth, i, j = self._gas.deepest
-        if depth > _OVERLAP:
-            raise RefusedError(
-                f"molecules {i:.0f} and {j:.0f} overlap at the start, by {depth:.3g} of their diameter: "
-                "move them apart or make them smaller"
-            )
+        self._refuse_overlap(*self._gas.deepest)
 
     def _new_cells(self) -> Cells:
         """Return cells in which there are a few molecules each; refuse a periodic box that is too short."""

@@ -5,11 +5,10 @@ from typing import ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.parcel import Arrangement, Array
-from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.core.state import EVENT, MOLECULE, Modes, aligned_records
+from atmosbox.engine.core.refusal import RefusedError, number
+from atmosbox.engine.core.state import EVENT, Modes, aligned_records
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.layout import PLACE
@@ -106,13 +105,8 @@ class AttractingParcelSet(ParcelSet):
         if not np.issubdtype(species.dtype, np.integer) or (species < 0).any():
             raise RefusedError("species of a molecule is not a whole number: give 0, 1, 2, ...")
         species = np.broadcast_to(species, (n,)).astype(np.int64)
-        self._molecules = aligned_records(n, MOLECULE)
-        for axis, name in enumerate("xyz"):
-            self._molecules[name] = position[:, axis]
-            self._molecules["v" + name] = velocity[:, axis]
         self._kinds, kind, self._size_radius = classify(self._mass, self._diameter, self._rotation, None, species)
-        self._molecules["kind"] = kind
-        self._fields = self._molecules.view(np.ndarray)
+        self._write(position, velocity, kind)
         radius = np.array(self._kinds.table["radius"])
         if len(radius) > _KINDS:
             raise RefusedError(
@@ -137,15 +131,8 @@ class AttractingParcelSet(ParcelSet):
                     f"each other up to a distance of {reach:.6g} on a periodic axis: make it "
                     f"{2.0 * _TIGHT * reach:.6g} or more"
                 )
-        self._modes = Modes(
-            contacts=True,
-            gravity=self.gravity > 0.0,
-            rotation=False,
-            mixed=len(self._kinds.table) > 1,
-            spanning=False,
-            periodic=any(self._periodic),
-            piston=False,
-        )
+        mixed, periodic = len(self._kinds.table) > 1, any(self._periodic)
+        self._modes = Modes(contacts=True, gravity=self.gravity > 0.0, mixed=mixed, periodic=periodic)
         self._find_kernels()
         self._events = aligned_records(n, EVENT)
         self._calendar = new_calendar(n)
@@ -291,23 +278,14 @@ class AttractingParcelSet(ParcelSet):
         RefusedError
             If there is no bath, or the temperature is not finite and above 0.
         """
-        kT = number(kT, "kT of the random bath")
-        if not kT > 0.0:
-            raise RefusedError(f"kT of the random bath = {kT} is not positive: give a number above 0")
+        kT = number(kT, "kT of the random bath", above=0.0)
         if not self._bath.rate > 0.0:
             raise RefusedError("this box has no random bath: give it a RandomBath")
         self._bath.schedule_kT[:] = kT
 
     def _field_changes(self, gravity: float) -> None:
-        now = self._now
-        m = self._fields
-        dt = now - m["clock"]
-        for name in "xyz":
-            m[name] += dt * m["v" + name]
-        m["z"] -= 0.5 * self._gravity * dt * dt
-        m["vz"] -= self._gravity * dt
-        m["clock"] = now
+        self._move(*self._flown(self._fields, turn=False), self._now)
         self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
         self._modes = self._modes._replace(gravity=gravity > 0.0)
         self._find_kernels()
-        self._replan(self._gas(), now)
+        self._replan(self._gas(), self._now)

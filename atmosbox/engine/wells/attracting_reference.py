@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine.core.elementary import log_of_normal
-from atmosbox.engine.core.pair import nearest_along
 from atmosbox.engine.core.random import gaussian_pair, uniform
 from atmosbox.engine.core.square_well import BOUNCE, CAPTURE, CORE, RELEASE, resolve_crossing
 from atmosbox.engine.core.walls import wall_kT
@@ -58,22 +57,12 @@ class AttractingReference(Reference):
         self.inside = {
             (i, j)
             for i, j in itertools.combinations(range(self.number), 2)
-            if not self.hard[i, j] and self._apart(i, j) < self.edge[i, j]
+            if not self.hard[i, j] and np.sum(self.relative(i, j) ** 2) < self.edge[i, j] ** 2
         }
         self.bath = new_bath(bath)
         self.draws_at = math.inf
         with np.errstate(over="ignore"):
             self._wait()
-
-    def _apart(self, i: int, j: int) -> float:
-        return math.sqrt(float(np.sum(np.square(self._relative(i, j)))))
-
-    def _relative(self, i: int, j: int) -> Any:
-        r = self.position[i] - self.position[j]
-        for axis in range(3):
-            if self.periodic[axis]:
-                r[axis] = nearest_along(r[axis], self.length[axis], 1.0 / self.length[axis])
-        return r
 
     def _wait(self) -> None:
         rate = self.bath.rate * self.number
@@ -90,11 +79,9 @@ class AttractingReference(Reference):
         return sorted([*super().ahead(), *drawn])
 
     def _contacts(self) -> Iterator[Event]:
-        turns = [(-1.0, 0.0, 1.0) if periodic else (0.0,) for periodic in self.periodic]
-        images = self.length * np.array(list(itertools.product(*turns)))
         for i, j in itertools.combinations(range(self.number), 2):
             v = self.velocity[i] - self.velocity[j]
-            r = self.position[i] - self.position[j] + images
+            r = self.position[i] - self.position[j] + self.images
             square = np.sum(r * r, axis=1)
             nearest = int(np.argmin(square))
             speed_squared = float(v @ v)
@@ -125,7 +112,7 @@ class AttractingReference(Reference):
             super()._resolve(event)
 
     def _cross(self, which: int, i: int, j: int) -> None:
-        r, u = tuple(self._relative(i, j)), tuple(self.velocity[i] - self.velocity[j])
+        r, u = tuple(self.relative(i, j)), tuple(self.velocity[i] - self.velocity[j])
         change, what = resolve_crossing(r, u, which, self.mass[i], self.mass[j], self.depth[i, j])
         self.velocity[i] += change
         self.velocity[j] -= self.mass[i] / self.mass[j] * np.array(change)

@@ -1,14 +1,14 @@
 """The additional parameters of a box of attracting molecules: its wells, and a bath of random velocities."""
 
 import math
+from collections import namedtuple
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.inputs import number
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.inputs import numbers
+from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ class RandomBath:
     rate: float
 
 
-class Wells(NamedTuple):
+class Wells(namedtuple("Wells", "core edge depth distance number count stress")):
     """The wells in the form that the kernels take.
 
     ``core``, ``edge`` and ``depth : (kind, kind)``: see `square_well.Well`; ``distance : (kind, kind)`` is the radius
@@ -70,29 +70,14 @@ class Wells(NamedTuple):
     r_a dp_a over all events of pairs since the start [energy].
     """
 
-    core: Any
-    edge: Any
-    depth: Any
-    distance: Any
-    number: Any
-    count: Any
-    stress: Any
 
-
-class Bath(NamedTuple):
+class Bath(namedtuple("Bath", "clock rate schedule schedule_time schedule_kT heat")):
     """The bath in the form that the kernels take.
 
     ``clock : (1,)``: the time of the next draw [time, local]; ``rate``: draws per molecule and time [1/time];
     ``schedule``, ``schedule_time``, ``schedule_kT``: its temperature as that of a wall, see `state.Walls`;
     ``heat : (1,)``: the energy that it has given [energy].
     """
-
-    clock: Any
-    rate: float
-    schedule: Any
-    schedule_time: Any
-    schedule_kT: Any
-    heat: Any
 
 
 def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
@@ -111,10 +96,7 @@ def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
     limits = {"range": (1.0, _WIDEST), "depth": (0.0, math.inf)}
     tables = []
     for name, (least, most) in limits.items():
-        try:
-            table = np.array(getattr(well, name), np.float64)
-        except (TypeError, ValueError):
-            raise RefusedError(f"{name} of the well is not a number: give a number, or a table of species") from None
+        table = numbers(getattr(well, name), f"{name} of the well")
         if table.ndim == 0:
             table = np.full((species, species), float(table))
         if table.ndim != 2 or table.shape[0] != table.shape[1] or len(table) < species:

@@ -23,7 +23,7 @@ Smallenburg, F. (2022), doi:10.1140/epje/s10189-022-00180-8 (lists of neighbours
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,13 @@ _FALL = 0.125
 _END = -1
 
 
-class Vicinity(NamedTuple):
+class Vicinity(
+    namedtuple(
+        "Vicinity",
+        "entry stride anchor width cell next previous first mark found gap reach number_x number_y number_z inverse_x "
+        "inverse_y inverse_z",
+    )
+):
     """Shells, lists and cells in the form that the kernels take.
 
     ``entry : (molecule * stride,)``: the lists. ``anchor : (molecule, 4)``: x, y, z and the radius of the shell
@@ -52,25 +58,6 @@ class Vicinity(NamedTuple):
     ``gap : (molecule,)`` [length^2]: working memory. ``reach`` is the largest edge of any pair [length]; ``number_*``
     and ``inverse_*`` the number of cells along an axis, and one over their width [1/length].
     """
-
-    entry: Any
-    stride: int
-    anchor: Any
-    width: Any
-    cell: Any
-    next: Any
-    previous: Any
-    first: Any
-    mark: Any
-    found: Any
-    gap: Any
-    reach: float
-    number_x: int
-    number_y: int
-    number_z: int
-    inverse_x: float
-    inverse_y: float
-    inverse_z: float
 
 
 def new_vicinity(

@@ -6,8 +6,9 @@ shell, or a wall, whichever comes first. In addition the bath draws velocities a
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -17,16 +18,14 @@ from atmosbox.engine.core.motion import time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.random import gaussian_pair, uniform
 from atmosbox.engine.core.square_well import CAPTURE, CORE, RELEASE, resolve_crossing, time_to_crossing
-from atmosbox.engine.core.state import Box, Calendar, Kinds, Modes, Motion, Tallies, Walls
+from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.exact.calendar import next_event, schedule
 from atmosbox.engine.exact.encounter import hit, kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.search import CONTACT
-from atmosbox.engine.wells.attraction import Bath, Wells
 from atmosbox.engine.wells.vicinity import (
-    Vicinity,
     bring_back,
     enter,
     is_inside,
@@ -41,19 +40,8 @@ SHELL = CONTACT + 4
 _BATH = 3
 
 
-class WellGas(NamedTuple):
-    """All data of these kernels: see `state.Gas`."""
-
-    molecules: Any
-    events: Any
-    kinds: Kinds
-    calendar: Calendar
-    box: Box
-    walls: Walls
-    tallies: Tallies
-    wells: Wells
-    vicinity: Vicinity
-    bath: Bath
+class WellGas(namedtuple("WellGas", "molecules events kinds calendar box walls tallies wells vicinity bath")):
+    """All data of these kernels; the parts are described at the types of these names: see `state.Gas`."""
 
 
 @kernel
@@ -211,7 +199,7 @@ def proceed(gas, until, most, modes):
             if what == SHELL:
                 at = bring_back(i, at, gas)
                 if renew(i, at, False, gas, modes):
-                    status = Status.ROW_FULL
+                    status = Status.FULL
                     break
                 renewed += 1
             elif what < CONTACT:
@@ -261,7 +249,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
             call(i, now, gas)
         for i in range(gas.molecules.size):
             if renew(i, motion_at(i, now, gas, modes), True, gas, modes):
-                return Status.ROW_FULL.value
+                return Status.FULL.value
         wells = gas.wells
         wells.number[:] = 0
         for i in range(gas.molecules.size):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.advance import Passed
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.wells.well_advance import advancing
 from atmosbox.engine.wells.well_events import specialise
@@ -60,7 +60,7 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
         if not math.isinf(clock):
             gas.tallies.random[0] = state
             gas.bath.clock[0] = clock
-        return Passed.DONE.value if placed else Passed.FULL.value
+        return Status.DONE.value if placed else Status.FULL.value
 
     @kernel
     def attract(gas, book, lists, strength):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.core.lift import interpolate
+from atmosbox.engine.core.schedule import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.engine.liquid.reservoir import (

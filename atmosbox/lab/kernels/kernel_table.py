@@ -8,10 +8,11 @@ from collections.abc import Callable
 from typing import Any
 
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.core.lift import interpolate
+from atmosbox.engine.core.schedule import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH
-from atmosbox.engine.exact.advance import Passed, advancing, dry_loop
+from atmosbox.engine.exact.advance import advancing, dry_loop
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.lab.kernels.attracting import attracting, warm_bath
@@ -33,7 +34,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     def place(gas, book, layout):
         """Enter all molecules into their cells and plan their events; return ``DONE`` or ``FULL``."""
         layout.due[0] = PLACE
-        return Passed.DONE.value if settle(gas, book.now[0], layout) else Passed.FULL.value
+        return Status.DONE.value if settle(gas, book.now[0], layout) else Status.FULL.value
 
     return pass_time, place
 

@@ -13,8 +13,8 @@ from typing import Any
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, SPECULAR
-from atmosbox.engine.exact.advance import Passed
 from atmosbox.engine.exact.encounter import kind_of
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import Column, Layout, write_column
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.liquid.reservoir import cover
@@ -139,7 +139,7 @@ def gravity_setter(modes: Modes) -> Callable[..., Any]:
         weight = begun.weight / gas.molecules.size * gravity
         column = Column(weight, kT, c.wanted, c.thinnest, c.count, c.old)
         other = Layout(layout.shape, layout.due, layout.filled, layout.edge, layout.radius, column)
-        return Passed.DONE.value if write_column(kT, gas, other, modes) else Passed.FULL.value
+        return Status.DONE.value if write_column(kT, gas, other, modes) else Status.FULL.value
 
     made: Callable[..., Any] = set_gravity
     return made
