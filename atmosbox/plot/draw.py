@@ -202,6 +202,8 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
     """Set the limits of axes: no margin beside a curve of many ``values``, and heights that begin at zero."""
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
+    if panel.y_limits:
+        axes.update_datalim([(0.0, value) for value in panel.y_limits], updatex=False)
     axes.autoscale_view()
     if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:
         axes.set_xlim(left=0.0)
