@@ -23,28 +23,16 @@ from atmosbox.lab.kernels.flowing import Flow as Wind
 from atmosbox.lab.kernels.flowing import can_flow
 from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.picture import Picture
+from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.kernels.starting import Start
+from atmosbox.lab.kernels.sums import Bins, Sum
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_box import hygrometer, liquid_picture
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_box import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
-from atmosbox.scene.instruments import (
-    MOMENTS,
-    Air,
-    Clusters,
-    Discs,
-    Flow,
-    Layers,
-    Leaving,
-    Lift,
-    Mixing,
-    MoistLift,
-    Nuclei,
-    Speeds,
-    Water,
-)
+from atmosbox.scene.instruments import MOMENTS, Air, Discs, Flow, Layers, Mixing, Speeds
 from atmosbox.scene.instruments.flow import LOW, modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
@@ -60,9 +48,8 @@ _CORNERS = 4
 _SPARE = 1.5
 _LONGER = 4
 """Factor by which the rows of cells can grow, because memory is reserved for that."""
-_INSTRUMENTS = (Air, Clusters, Discs, Flow, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
+_INSTRUMENTS = (*MEASURED, Layers, Speeds)
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
-_READINGS = 64
 _DENSITIES = 129
 """Number of densities at which the adiabatic lapse rate over gravity is tabulated, up to that at which discs freeze."""
 _FRESH = 0.2
@@ -165,7 +152,7 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.counts.size
+    >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.speeds.size
     58
     """
     setup = build(prepared)
@@ -252,31 +239,46 @@ def _of(setup: Setup, kind: type) -> Any:
 
 def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
     """Return the data of the instruments at their start, with memory for further readings."""
-    air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
-    edges = np.zeros(1) if speeds is None else speeds.edges
-    number = 0 if layers is None else layers.number
-    half = np.zeros(0, np.int64)
+    air, speeds, layers, discs, mixing = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs, Mixing))
+    parcel: Any = setup.parcel
+    mass, wide, number = parcel.mass, float(parcel.length[0]), len(Reading) + 5
+    rows, columns = (0, 0) if layers is None else (layers.number, layers.columns)
+    sides = _bins(wide, None)
     if discs is not None:
-        mass = setup.parcel.mass
-        half = np.ones(mass.size, np.int64)
-        half[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
+        kind = np.ones(mass.size, np.int64)
+        kind[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
+        sides = _bins(wide, 1, kind=kind)
+    elif mixing is not None:
+        low = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
+        sides = _bins(wide - 2.0 * low, mixing.bins, kind=mixing.right.astype(np.int64), low=low)
+    edges = None if speeds is None else np.asarray(speeds.edges)
     return Gauges(
-        reading=np.zeros(_READINGS),
-        warmth=np.zeros(2),
+        reading=np.zeros(number),
+        means=np.zeros(number),
+        samples=np.zeros(1),
         before=np.zeros(8),
         barometer=0 if air is None or air.barometer == "all" else 4,
-        edges=edges,
-        counts=np.zeros(edges.size - 1),
-        speeds=np.zeros(edges.size - 1),
-        sums=np.zeros((4, number)),
-        layers=np.zeros(5 * number),
-        scratch=np.zeros((6, number if layers is None else number * layers.columns)),
-        half=half,
-        running=np.zeros(8),
+        whole=_bins(wide, 1),
+        parts=_bins(wide, columns, rows=rows),
+        fast=_bins(wide, 1, edges=edges) if speeds else _bins(wide, None),
+        sides=sides,
+        speeds=np.zeros(0 if edges is None else edges.size - 1),
+        layers=np.zeros(5 * rows),
+        virial=np.zeros(rows),
+        running=np.zeros(0 if discs is None else 7),
         mixture=_mixture(setup),
         water=hygrometer(prepared, setup),
         flow=_wind(setup),
     )
+
+
+def _bins(
+    width: float, columns: int | None, *, kind: Any = None, rows: int = 1, low: float = 0.0, edges: Any = None
+) -> Bins:
+    """Return bins of molecules; there is no column, and no bin, in a scene without an instrument that needs them."""
+    kind, edges = np.zeros(0, np.int64) if kind is None else kind, np.zeros(1) if edges is None else edges
+    number = (columns or 0) * rows * max(edges.size - 1, 1) * (2 if kind.size else 1)
+    return Bins(kind, rows, columns or 0, low, width, edges, np.zeros((number, len(Sum))))
 
 
 def _wind(setup: Setup) -> Any:
@@ -294,8 +296,7 @@ def _wind(setup: Setup) -> Any:
         lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), 1.0))
     return Wind(
         sums=np.zeros((3, rows * columns)),
-        upright=np.zeros(rows * columns),
-        total=np.zeros(4),
+        frames=np.zeros(1),
         high=high,
         wave=phases,
         column=np.zeros((2, columns)),
@@ -313,15 +314,11 @@ def _wind(setup: Setup) -> Any:
 
 def _mixture(setup: Setup) -> Mixture:
     """Return the data of two gases that mix; empty arrays in a scene without them."""
-    instrument, parcel = _of(setup, Mixing), setup.parcel
+    instrument = _of(setup, Mixing)
     moments = [] if instrument is None else list(instrument.moments.values())
     bins = 0 if instrument is None else instrument.bins
     known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument.moments]
-    radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
     return Mixture(
-        right=np.zeros(0, np.int64) if instrument is None else instrument.right.astype(np.int64),
-        low=radius,
-        width=float(parcel.length[0]) - 2.0 * radius,
         moments=np.array(moments, float),
         frame=setup.frame,
         off=np.full(len(moments), math.inf),
@@ -329,7 +326,6 @@ def _mixture(setup: Setup) -> Mixture:
         scatter=np.concatenate([np.zeros(0), *(each[1] for each in known)]),
         mean=np.full(len(moments) * bins, math.nan),
         error=np.full(len(moments) * bins, math.nan),
-        counts=np.zeros((2, bins)),
     )
 
 
@@ -341,18 +337,14 @@ def _averages(setup: Setup) -> tuple[Average, Average]:
     """
     speeds, layers = _of(setup, Speeds), _of(setup, Layers)
     shares = 0 if speeds is None else speeds.edges.size - 1
-    profiles = 0 if layers is None else 5 * layers.number
+    rows = 0 if layers is None else layers.number
     memory = 0.0 if layers is None else layers.memory
-    return _average(shares, 1), _average(profiles, max(1, math.ceil(2.0 * memory / setup.frame)))
+    return _average(shares, shares, 1), _average(5 * rows, 4 * rows, max(1, math.ceil(2.0 * memory / setup.frame)))
 
 
-def _average(number: int, frames: int) -> Average:
-    return Average(
-        np.zeros((BLOCKS + 1, number)),
-        np.array([0, 0, frames, frames]),
-        np.full(number, np.nan),
-        np.full(number, np.nan),
-    )
+def _average(summed: int, number: int, frames: int) -> Average:
+    state = np.array([0, 0, frames, frames])
+    return Average(np.zeros((BLOCKS + 2, summed)), state, np.full(number, np.nan), np.full(number, np.nan))
 
 
 def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:

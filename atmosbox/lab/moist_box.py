@@ -9,7 +9,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine.liquid.substance import Substance
-from atmosbox.lab.kernels.hygrometer import Hygrometer, Sampled
+from atmosbox.lab.kernels.hygrometer import Hygrometer
 from atmosbox.page.frame import POOL, RAIN, SWELLING, places
 from atmosbox.scene.instruments import Leaving, MoistLift
 from atmosbox.scene.instruments.water import _CRITICAL
@@ -51,7 +51,6 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         level, around = _environment(prepared, setup, lift)
     width, empty, merged = _leaving(setup)
     return Hygrometer(
-        sums=np.zeros(len(Sampled)),
         before=np.zeros(2),
         met=np.zeros(4),
         contact=np.array(_CONTACT_SERIES.coef),

@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox import theory as law
 from atmosbox.lab.box import LabBox
-from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.moist_box import bins_of, finer_at_kinks, theory_at
 from atmosbox.lab.stage import plain
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared
-from atmosbox.theory.constants import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,58 +36,16 @@ _WAY = 401
 _WIDER = 1.25
 
 
-def water_readings(box: LabBox) -> list[tuple[str, int, float]]:
-    """Return the readings of the water that are shown: see `plan`."""
-    scale, kinds = box.setup.scale, [type(each) for each in box.setup.instruments]
-    rate, ratio, warm, force = scale.weight / scale.time, law.WATER_MASS_RATIO, scale.temperature, scale.pressure
-    found: list[tuple[str, int, float]] = [
-        ("water_vapor_partial_pressure", WaterReading.VAPOUR_PRESSURE, force),
-        ("saturation_vapor_pressure", WaterReading.SATURATION, force),
-        ("relative_humidity", WaterReading.HUMIDITY, 1.0),
-        ("gas_temperature", WaterReading.GAS_KT, warm),
-        ("liquid_temperature", WaterReading.LIQUID_KT, warm),
-        ("condensation_rate", WaterReading.CONDENSING, rate),
-        ("evaporation_rate", WaterReading.EVAPORATING, rate),
-        ("humidity_mixing_ratio", WaterReading.VAPOUR_RATIO, ratio),
-        ("cloud_liquid_water_mixing_ratio", WaterReading.LIQUID_RATIO, ratio),
-        ("vapor_molecule_count", WaterReading.VAPOUR, 1.0),
-        ("liquid_molecule_count", WaterReading.LIQUID, 1.0),
-        ("rained_molecule_count", WaterReading.RAINED, 1.0),
-    ]
-    if Leaving in kinds:
-        found += [
-            ("pool_open_share", WaterReading.OPEN, 1.0),
-            ("liquid_saturation_vapor_pressure", WaterReading.LIQUID_SATURATION, force),
-            ("temperature_of_those_that_left", WaterReading.LEFT_KT, warm),
-        ]
-    if MoistLift in kinds:
-        found += [
-            ("parcel_temperature", WaterReading.PARCEL_KT, warm),
-            ("parcel_pressure", WaterReading.PARCEL_PRESSURE, force),
-            ("adiabat_temperature", WaterReading.ADIABAT, warm),
-            ("moment", WaterReading.MIDDLE, 1.0),
-        ]
-        if box.book.moisture.reservoir.rain > 0.0:
-            found.append(("rain_mixing_ratio", WaterReading.RAIN_RATIO, ratio))
-        water: Any = box.gauges.water
-        if water.level.size:
-            found.append(("parcel_buoyancy", WaterReading.BUOYANCY, STANDARD_GRAVITY))
-    nuclei = _instrument(box.setup, Nuclei)
-    if nuclei is not None:
-        solute = box.book.moisture.drops.solute
-        real = scale.length / nuclei.width
-        found.append(("saturation_ratio", WaterReading.SATURATION_RATIO, 1.0))
-        found += [("salted_drop_radius", WaterReading.SALTED_RADIUS, real)] if (solute > 0.0).any() else []
-        found += [("pure_drop_radius", WaterReading.PURE_RADIUS, real)] if (solute == 0.0).any() else []
-    return found
-
-
-def leaving_energies(box: LabBox) -> list[tuple[str, str, int, int, float]]:
-    """Return the histogram of the energies of molecules that leave the liquid: see `plan._profiles`."""
-    water: Any = box.gauges.water
-    bins = water.width.size
-    factor = 1.0 / box.setup.scale.energy
-    return [("leaving_energy_probability_density", "gauges.water", 0, bins, factor)] if bins else []
+def absent_readings(box: LabBox) -> set[str]:
+    """Return the variables of the water that its instruments measure in other scenes, but not in this one."""
+    moisture, water = box.book.moisture, box.gauges.water
+    absent = set() if moisture.reservoir.rain > 0.0 else {"rain_mixing_ratio"}
+    absent |= set() if water.level.size else {"parcel_buoyancy"}  # type: ignore[union-attr]
+    if box.modes.drops:
+        salted = moisture.drops.solute > 0.0
+        absent |= set() if salted.any() else {"salted_drop_radius"}
+        absent |= {"pure_drop_radius"} if salted.all() else set()
+    return absent
 
 
 def fixed_axes(box: LabBox) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable
 from typing import Any
@@ -14,33 +13,19 @@ from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.exact.advance import Passed, advancing, dry_loop
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.liquid.moist_loop import moist_loop
-from atmosbox.lab.kernels.attracting import attracting, warm_bath
-from atmosbox.lab.kernels.averaging import average, end_profile, forget
+from atmosbox.lab.kernels.attracting import attracting
+from atmosbox.lab.kernels.averaging import begin_averages_anew
 from atmosbox.lab.kernels.clustering import clustering
-from atmosbox.lab.kernels.flowing import adiabat, can_flow
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.knobs import can_set_gravity, gravity_setter, moist_knobs
 from atmosbox.lab.kernels.picture import picture
 from atmosbox.lab.kernels.starting import can_start, starting
 
 
-@functools.cache
-def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``pass_time`` and ``place`` of one set of modes."""
-    pass_time, settle = advancing(modes, moist_loop if modes.phases else dry_loop)
-
-    @kernel
-    def place(gas, book, layout):
-        """Enter all molecules into their cells and plan their events; return ``DONE`` or ``FULL``."""
-        layout.due[0] = PLACE
-        return Passed.DONE.value if settle(gas, book.now[0], layout) else Passed.FULL.value
-
-    return pass_time, place
-
-
 @kernel
-def warm_walls(walls, first, last, kT):
+def warm_walls(gas, first, last, kT):
     """Set the temperature of the heat baths among some walls [energy]: see `ParcelSet.set_wall_kT`."""
+    walls = gas.walls
     for wall in range(first, last):
         if walls.law[wall] == HEAT_BATH:
             for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
@@ -61,55 +46,22 @@ def lead(gas, ascent, book, towards):
     return 0
 
 
-@kernel
-def begin_averages_anew(speeds, layers):
-    """Begin the averages of many frames again."""
-    forget(speeds)
-    forget(layers)
-    return 0
-
-
-@kernel
-def note_frame(gas, gauges, speeds, layers):
-    """Add the frame that has ended to the averages."""
-    average(gauges.speeds, speeds)
-    end_profile(gas, gauges, layers)
-    return 0
-
-
-@kernel
-def note_windy_frame(gas, gauges, speeds, layers):
-    """Do the same, and compute the adiabat of the averages."""
-    note_frame(gas, gauges, speeds, layers)
-    if gauges.flow.adiabat.size > 0:
-        adiabat(gas.box, layers.mean, gauges.flow)
-    return 0
-
-
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
     found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
     found |= {"set_gravity": gravity_setter(modes)} if can_set_gravity(modes) and not wells else {}
+    found |= moist_knobs(modes) if modes.phases else {"warm_walls": warm_walls}
+    found |= {"look": picture(modes), "begin_averages_anew": begin_averages_anew}
+    found |= zip(("begin", "sample", "end_frame", "note_frame"), gauging(modes), strict=True)
     if wells:
-        pass_time, place, attract = attracting(modes)
-        begin, sample, end_frame, look = clustering(modes)
-        found |= {"attract": attract, "warm_bath": warm_bath}
-    else:
-        pass_time, place = passing(modes)
-        begin, sample, end_frame = gauging(modes)
-        look = picture(modes)
-    return (
-        found
-        | {
-            "place": place,
-            "pass_time": pass_time,
-            "begin": begin,
-            "sample": sample,
-            "end_frame": end_frame,
-            "note_frame": note_windy_frame if can_flow(modes) and not wells else note_frame,
-            "begin_averages_anew": begin_averages_anew,
-            "look": look,
-        }
-        | (moist_knobs(modes) if modes.phases else {"warm_walls": warm_walls})
-    )
+        return found | attracting(modes) | clustering(modes)
+    pass_time, settle = advancing(modes, moist_loop if modes.phases else dry_loop)
+
+    @kernel
+    def place(gas, book, layout):
+        """Enter all molecules into their cells and plan their events; return ``DONE`` or ``FULL``."""
+        layout.due[0] = PLACE
+        return Passed.DONE.value if settle(gas, book.now[0], layout) else Passed.FULL.value
+
+    return found | {"pass_time": pass_time, "place": place}
