@@ -97,7 +97,7 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
         layout=layout if has_layers else 0,
         cleared=_cleared(places, float(sides[0])) if arrays.modes.drops else 0,
         velocity=np.zeros((n, 3)),
-        key=np.zeros(3 * n),
+        key=np.zeros(3 * n + 1),
         rank=np.zeros(n, np.int64),
         other=np.zeros(n, np.int64),
         waiting=np.zeros((DEPTH, 2), np.int64),

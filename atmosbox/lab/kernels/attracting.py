@@ -11,6 +11,7 @@ from atmosbox.engine.exact.advance import Passed
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.wells.well_advance import advancing
 from atmosbox.engine.wells.well_events import specialise
+from atmosbox.lab.kernels.readings import ENERGY
 
 
 class Lists(NamedTuple):
@@ -56,14 +57,15 @@ def attracting(modes: Modes) -> dict[str, Callable[..., Any]]:
         return Passed.DONE.value if placed else Passed.FULL.value
 
     @kernel
-    def attract(gas, book, layout, strength):
+    def attract(gas, book, layout, gauges, strength):
         """Change the depth of all wells: see `AttractingParcelSet.set_strength`."""
-        depth = gas.wells.depth
-        layout.work[0] -= energy_of_wells(gas.wells)
+        depth, work = gas.wells.depth, -energy_of_wells(gas.wells)
         for one in range(depth.shape[0]):
             for two in range(depth.shape[1]):
                 depth[one, two] = strength * layout.full_depth[one, two]
-        layout.work[0] += energy_of_wells(gas.wells)
+        work += energy_of_wells(gas.wells)
+        layout.work[0] += work
+        gauges.before[ENERGY] += work
         layout.strength[0] = strength
         replan(gas, book.now[0])
         return 0

@@ -16,9 +16,9 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.wells.vicinity import is_inside
 from atmosbox.lab.kernels.attracting import energy_of_wells
-from atmosbox.lab.kernels.gauging import ENERGY, gauging
+from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.picture import picture
-from atmosbox.lab.kernels.readings import Reading
+from atmosbox.lab.kernels.readings import TIME, Reading
 
 
 class Crowd(NamedTuple):
@@ -89,14 +89,13 @@ def _find_drops(vicinity, stride, crowd):
 @functools.cache
 def clustering(modes: Modes) -> dict[str, Callable[..., Any]]:
     """Return the kernels that replace those of another box, by name."""
-    begin_air, _, end_air, _ = gauging(modes)
+    begin_air, _, end_air, _ = gauging(modes, wells=True)
     look_at_speeds = picture(modes)
 
     @kernel
     def begin(gas, ascent, book, gauges, crowd):
         """Begin to measure."""
         begin_air(gas, ascent, book, gauges)
-        gauges.before[ENERGY] += energy_of_wells(gas.wells)
         crowd.virial[0] = np.sum(gas.tallies.virial)
         return 0
 
@@ -132,10 +131,10 @@ def clustering(modes: Modes) -> dict[str, Callable[..., Any]]:
     @kernel
     def end_frame(gas, ascent, book, gauges, layout, crowd):
         """Take the readings at the end of a frame, and complete the means of the frame."""
-        lasted = -gauges.before[6]
+        lasted = -gauges.before[TIME]
         end_air(gas, ascent, book, gauges)
-        lasted += gauges.before[6]
-        reading, tallies = gauges.reading, gas.tallies
+        lasted += gauges.before[TIME]
+        reading = gauges.reading
         volume = gas.box.length_x * gas.box.length_z * (1.0 if gas.box.planar else gas.box.length_y)
         _count_wells(gas.vicinity, layout.stride[0], crowd.wells)
         _find_drops(gas.vicinity, layout.stride[0], crowd)
@@ -148,9 +147,8 @@ def clustering(modes: Modes) -> dict[str, Callable[..., Any]]:
             crowd.size[crowd.drop[i]] += 1
             drops += crowd.size[crowd.drop[i]] == 1
             largest = max(largest, crowd.size[crowd.drop[i]])
-        virial = np.sum(tallies.virial)
+        virial = np.sum(gas.tallies.virial)
         bound, kinetic = energy_of_wells(gas.wells), reading[Reading.KINETIC_ENERGY]
-        heat, work = gas.bath.heat[0], layout.work[0]
         motion = gas.molecules.size * reading[Reading.AIR_TEMPERATURE]
         density = vapour_density(largest, vapour, drops, volume, crowd)
         kT = wall_kT(gas.bath, 0, reading[Reading.ELAPSED_TIME])
@@ -161,23 +159,14 @@ def clustering(modes: Modes) -> dict[str, Callable[..., Any]]:
         reading[Reading.DROP_COUNT] = drops
         reading[Reading.ATTRACTION_ENERGY] = bound
         reading[Reading.MOLECULAR_ENERGY] = kinetic + bound
-        reading[Reading.HEAT_FROM_BATH] = heat
-        reading[Reading.WORK_BY_ATTRACTION] = work
+        reading[Reading.HEAT_FROM_BATH] = gas.bath.heat[0]
+        reading[Reading.WORK_BY_ATTRACTION] = layout.work[0]
         reading[Reading.VIRIAL_PRESSURE] = (motion + (virial - crowd.virial[0]) / (3.0 * lasted)) / volume
         reading[Reading.WELL_COUNT] = np.sum(gas.wells.number)
         reading[Reading.AIR_TEMPERATURE_THEORY] = kT
         kT = reading[Reading.AIR_TEMPERATURE]
         reading[Reading.VIRIAL_PRESSURE_THEORY] = gas_pressure(density, kT, layout.strength[0], crowd.gas_law)
         crowd.virial[0] = virial
-        # the ledger: see `Account.ledger`
-        given, passed = heat + work, abs(heat) + abs(work)
-        for wall in range(6):
-            given += tallies.heat[wall]
-            passed += abs(tallies.heat[wall])
-        start = gauges.before[ENERGY]
-        largest_part = max(abs(kinetic + bound), abs(start), passed, kinetic, abs(bound))
-        off = abs(kinetic + bound - start - given)
-        reading[Reading.LEDGER_RESIDUAL] = off / largest_part if largest_part > 0.0 else 0.0
         return 0
 
     @kernel

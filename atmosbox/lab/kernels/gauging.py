@@ -15,10 +15,11 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.advance import ascent_of
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
+from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.averaging import update
 from atmosbox.lab.kernels.flowing import Flow, can_flow, flowing, write_adiabat
 from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
-from atmosbox.lab.kernels.readings import Reading
+from atmosbox.lab.kernels.readings import ENERGY, TIME, Reading
 from atmosbox.lab.kernels.sums import Bins, Sum, ceiling, summing
 from atmosbox.lab.kernels.two_gases import Mixture, end_mixing
 
@@ -28,8 +29,8 @@ class Gauges(NamedTuple):
 
     ``reading : (Reading,)`` has the last readings, ``means : (Reading,)`` the sums over the samples of a frame of those
     that are means, and ``samples : (1,)`` their number. ``before : (8,)`` are the impulses of the walls and the time at
-    the end of the last frame, and the energy at the start of all frames with what changes of gravity have given since
-    [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4 the floor only.
+    the end of the last frame, and the energy at the start of all frames with what changes of gravity and of attraction
+    have given since [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4 the floor only.
 
     ``whole`` is a single bin; ``parts`` are those of the layers, whose mean motion is not counted as warmth; ``fast``
     bins of speed; ``sides`` light and heavy discs, or two gases that mix across the box.
@@ -59,12 +60,8 @@ class Gauges(NamedTuple):
     flow: Flow | int
 
 
-_TIME, ENERGY = 6, 7
-"""Indices of ``Gauges.before``."""
-
-
 @functools.cache
-def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
+def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``begin``, ``sample``, ``end_frame`` and ``note_frame`` of one set of modes."""
     sum_up = summing(modes)
     flows = can_flow(modes)
@@ -73,9 +70,11 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def energy_now(gas, book, gauges):
-        """Return the energy of all molecules now, from their sums, and of the liquid [energy]."""
+        """Return the energy of all molecules now, from their sums, of their attraction and of the liquid [energy]."""
         whole = gauges.whole.sums[0]
         energy = whole[Sum.KINETIC] + whole[Sum.ROTATION] + gas.box.gravity * whole[Sum.WEIGHT]
+        if wells:
+            energy += energy_of_wells(gas.wells)
         return energy + condensed_energy(gas, book) if modes.phases else energy
 
     @kernel
@@ -175,7 +174,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
             gauges.before[wall] = gas.tallies.impulse[wall]
         for layer in range(gauges.virial.size):
             gauges.virial[layer] = gas.tallies.virial[layer]
-        gauges.before[_TIME] = time
+        gauges.before[TIME] = time
         gauges.samples[0] = 0.0
         gauges.reading[Reading.MOLECULES_IN_GAS] = gauges.whole.sums[0, Sum.NUMBER]
 
@@ -200,13 +199,16 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         """Take the readings at the end of a frame, which is the moment of its last sample, and complete its means."""
         reading, now, samples = gauges.reading, book.now[0], max(gauges.samples[0], 1.0)
         time = gas.walls.epoch[0] + now
-        lasted = time - gauges.before[_TIME]
+        lasted = time - gauges.before[TIME]
         total = energy_now(gas, book, gauges)
         given = passed = 0.0
         for wall in range(6):
             given += gas.tallies.heat[wall] + gas.tallies.work[wall]
             passed += abs(gas.tallies.heat[wall]) + abs(gas.tallies.work[wall])
-        largest = max(abs(total), abs(gauges.before[ENERGY]), passed)
+        if wells:
+            given += gas.bath.heat[0]
+            passed += abs(gas.bath.heat[0])
+        largest = max(abs(total), abs(gauges.before[ENERGY]), passed, gauges.whole.sums[0, Sum.KINETIC])
         for k in range(reading.size):
             reading[k] = gauges.means[k] / samples
         reading[Reading.ELAPSED_TIME] = time

@@ -53,7 +53,7 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
     found |= {"set_gravity": gravity_setter(modes)} if can_set_gravity(modes) and not wells else {}
     found |= moist_knobs(modes) if modes.phases else {"warm_walls": warm_walls}
     found |= {"look": picture(modes), "begin_averages_anew": begin_averages_anew}
-    found |= zip(("begin", "sample", "end_frame", "note_frame"), gauging(modes), strict=True)
+    found |= zip(("begin", "sample", "end_frame", "note_frame"), gauging(modes, wells=wells), strict=True)
     if wells:
         return found | attracting(modes) | clustering(modes)
     pass_time, settle = advancing(modes, moist_loop if modes.phases else dry_loop)

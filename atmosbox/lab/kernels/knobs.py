@@ -18,8 +18,8 @@ from atmosbox.engine.exact.encounter import kind_of
 from atmosbox.engine.exact.layout import Column, Layout, write_column
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.liquid.reservoir import cover
-from atmosbox.lab.kernels.gauging import ENERGY
 from atmosbox.lab.kernels.pairwise import pairwise_sum
+from atmosbox.lab.kernels.readings import ENERGY
 from atmosbox.lab.kernels.starting import can_start
 
 

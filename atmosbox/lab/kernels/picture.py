@@ -77,7 +77,8 @@ def picture(modes: Modes) -> Callable[..., Any]:
             picture.place[k, 2] = int(share(at.z, picture.length[2], box.inverse_z))
             speed = math.sqrt(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
             picture.colour[k] = math.floor(min(speed / picture.highest, 1.0) * _FASTEST + 0.5)
-        look_at_liquid(gas, book, picture)
+        if modes.phases:
+            look_at_liquid(gas, book, picture)
         return 0
 
     return look  # type: ignore[no-any-return]
@@ -86,13 +87,6 @@ def picture(modes: Modes) -> Callable[..., Any]:
 @functools.cache
 def _liquid(modes: Modes) -> Callable[..., Any]:
     """Return the kernel of one set of modes that writes which drops are drawn."""
-    if not modes.phases:
-
-        @kernel
-        def look_at_nothing(gas, book, picture):
-            """Do nothing: there is no liquid."""
-
-        return look_at_nothing  # type: ignore[no-any-return]
 
     @kernel
     def draw_layer(number, what, picture):

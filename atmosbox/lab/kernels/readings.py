@@ -38,3 +38,5 @@ _NAMES = [name for names in MEASURED.values() for name in names]
 _NAMES += ["gravity", "ledger_residual", "molecules_in_gas", "wall_temperature"]
 Reading = IntEnum("Reading", [name.upper() for name in dict.fromkeys(_NAMES)], start=0)  # type: ignore[misc]
 """Indices of ``Gauges.reading``: the names of the variables, in capital letters."""
+TIME, ENERGY = 6, 7
+"""Indices of ``Gauges.before``."""
