@@ -28,6 +28,7 @@ from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.sums import Bins, Sum
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_box import hygrometer, liquid_picture
+from atmosbox.lab.stage import instrument_of
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_box import crowd, lists, well_gas
@@ -111,7 +112,7 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     """
     parcel: Any = setup.parcel
     unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
-    if not _is_measured(_of(setup, Flow), _of(setup, Layers), parcel):
+    if not _is_measured(instrument_of(setup, Flow), instrument_of(setup, Layers), parcel):
         unknown.append(Flow.__name__)
     why = None
     if str(prepared.engine) != "exact":
@@ -233,13 +234,9 @@ def _ascent(ascent: Any) -> Any:
     return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment), start_energy=0.0)
 
 
-def _of(setup: Setup, kind: type) -> Any:
-    return next((each for each in setup.instruments if type(each) is kind), None)
-
-
 def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
     """Return the data of the instruments at their start, with memory for further readings."""
-    air, speeds, layers, discs, mixing = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs, Mixing))
+    air, speeds, layers, discs, mixing = (instrument_of(setup, kind) for kind in (Air, Speeds, Layers, Discs, Mixing))
     parcel: Any = setup.parcel
     mass, wide, number = parcel.mass, float(parcel.length[0]), len(Reading) + 5
     rows, columns = (0, 0) if layers is None else (layers.number, layers.columns)
@@ -283,7 +280,7 @@ def _bins(
 
 def _wind(setup: Setup) -> Any:
     """Return the data of the wind; empty arrays in a scene that does not measure it, 0 if no kernel can."""
-    flow, parcel = _of(setup, Flow), setup.parcel
+    flow, parcel = instrument_of(setup, Flow), setup.parcel
     if not can_flow(parcel.arrays().modes):  # type: ignore[attr-defined]
         return 0
     rows, columns = (0, 0) if flow is None else flow.shape
@@ -314,7 +311,7 @@ def _wind(setup: Setup) -> Any:
 
 def _mixture(setup: Setup) -> Mixture:
     """Return the data of two gases that mix; empty arrays in a scene without them."""
-    instrument = _of(setup, Mixing)
+    instrument = instrument_of(setup, Mixing)
     moments = [] if instrument is None else list(instrument.moments.values())
     bins = 0 if instrument is None else instrument.bins
     known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument.moments]
@@ -335,7 +332,7 @@ def _averages(setup: Setup) -> tuple[Average, Average]:
     A block of the profiles is twice as long as the correlation time of the column's energy, so that blocks are nearly
     independent.
     """
-    speeds, layers = _of(setup, Speeds), _of(setup, Layers)
+    speeds, layers = instrument_of(setup, Speeds), instrument_of(setup, Layers)
     shares = 0 if speeds is None else speeds.edges.size - 1
     rows = 0 if layers is None else layers.number
     memory = 0.0 if layers is None else layers.memory

@@ -10,6 +10,8 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine.liquid.substance import Substance
 from atmosbox.lab.kernels.hygrometer import Hygrometer
+from atmosbox.lab.stage import instrument_of
+from atmosbox.lab.theory_table import finer_at_kinks, theory_at
 from atmosbox.page.frame import POOL, RAIN, SWELLING, places
 from atmosbox.scene.instruments import Leaving, MoistLift
 from atmosbox.scene.instruments.water import _CRITICAL
@@ -23,8 +25,6 @@ if TYPE_CHECKING:
 
 _WAY = 801
 """Number of values in the table of the adiabat of a parcel."""
-_KINK, _STRAIGHT = 8.0, 1e-9
-"""Second difference of a curve at a kink, over the median one; and share of the largest below which it is straight."""
 _WIDER = 0.25
 """Distance in the logarithm of pressure by which that table reaches beyond the planned ascent at both ends."""
 _FARTHEST, _OFFSETS = 0.16, 41
@@ -39,7 +39,7 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         return 0
     substance: Substance = arrays.substance
     scale, binding = setup.scale, float(substance.binding_energy)
-    lift = next((each for each in setup.instruments if type(each) is MoistLift), None)
+    lift = instrument_of(setup, MoistLift)
     none = np.zeros(0)
     moment, planned, log_pressure, adiabat = none, none, none, np.zeros((0, 0))
     level, around = none, none
@@ -79,30 +79,6 @@ def _levels(setup: Setup, lift: MoistLift) -> Any:
     seconds = np.linspace(0.0, setup.duration * setup.scale.time, _WAY)
     ends = np.log([lift.environment.pressure(t) for t in seconds])
     return np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
-
-
-def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
-    """Return levels that are `times` closer together at the kinks of a curve, which linear interpolation would cut off.
-
-    The curve of a parcel has a kink where the cloud begins, the curve of a sounding at each of its levels.
-
-    Examples
-    --------
-    >>> levels = np.linspace(0.0, 1.0, 11)
-    >>> finer = finer_at_kinks(levels, np.where(levels < 0.45, levels**2, 2.0 * levels))
-    >>> finer.size, [round(float(each), 3) for each in finer[:4]]
-    (200, [0.0, 0.1, 0.2, 0.3])
-    """
-    bent = np.abs(np.diff(curve, 2))
-    usual = np.median(bent[bent > _STRAIGHT * bent.max()])
-    is_near = np.zeros(levels.size - 1, np.bool_)
-    for k in np.flatnonzero(bent > _KINK * usual):
-        is_near[k : k + 2] = True
-    pieces = [
-        np.linspace(low, high, times + 1)[:-1] if near else [low]
-        for low, high, near in zip(levels[:-1], levels[1:], is_near, strict=True)
-    ]
-    return np.concatenate([*pieces, levels[-1:]])
 
 
 def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
@@ -149,25 +125,9 @@ def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any
     return levels[::-1] - math.log(setup.scale.pressure), around[::-1] / setup.scale.temperature
 
 
-def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict[str, Any]:
-    """Return the curves of theory for a parcel and its environment at these pressures [Pa].
-
-    Theory gets arbitrary values of the parcel's temperature and water, so curves that depend on these mean nothing.
-    """
-    import xarray as xr  # loads slowly
-
-    ones = np.ones(pressure.size)
-    series = {"parcel_pressure": pressure, "environment_pressure": pressure, "parcel_temperature": 280.0 * ones}
-    series |= {"humidity_mixing_ratio": 0.0 * ones, "cloud_liquid_water_mixing_ratio": 0.0 * ones}
-    series |= {"rain_mixing_ratio": 0.0 * ones} if rains else {}
-    asked = xr.Dataset({name: ("elapsed_time", values) for name, values in series.items()})
-    told = prepared.module.theory(asked, prepared.settings)
-    return {name: values for name, values in told.items() if np.shape(values) == pressure.shape}
-
-
 def _leaving(setup: Setup) -> tuple[Any, int, int]:
     """Return the bin widths of the energy of molecules that leave, the number of empty bins, and `_merged`."""
-    leaving = next((each for each in setup.instruments if type(each) is Leaving), None)
+    leaving = instrument_of(setup, Leaving)
     if leaving is None:
         return np.zeros(0), 0, 1
     bounds = bins_of(setup, leaving)

@@ -13,8 +13,8 @@ from atmosbox.lab.drawing import drawing
 from atmosbox.lab.kernels.knobs import can_set_gravity
 from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.memory_image import BASE, Image, arguments, image
-from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE, absent_readings, fixed_axes, planned_alone
-from atmosbox.lab.stage import COLDER, lab_stage, plain, running_panels
+from atmosbox.lab.moist_box import bins_of
+from atmosbox.lab.stage import COLDER, instrument_of, lab_stage, plain, running_panels
 from atmosbox.lab.theory_table import short_run, show_plan, tables
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.lab.well_box import has_bath
@@ -23,7 +23,7 @@ from atmosbox.page.controls import gauges, knob_controls
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared
 from atmosbox.scene.conversion import declared_unit
-from atmosbox.scene.instruments import MOMENTS, Air, Nuclei
+from atmosbox.scene.instruments import MOMENTS, Air, Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared, link_start
 from atmosbox.theory import WATER_MASS_RATIO
 from atmosbox.theory.constants import BOLTZMANN, STANDARD_GRAVITY
@@ -35,6 +35,15 @@ if TYPE_CHECKING:
 
 STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
 """The arrays that are equal, to the last bit, if two boxes are in the same state."""
+WET_STATE = tuple(
+    f"book.moisture.reservoir.{name}" for name in ("energy", "count", "clock", "bound", "absent", "top", "spectrum")
+)
+"""The arrays that are equal, to the last bit, if the liquid of two boxes is in the same state."""
+DROP_STATE = (
+    "gas.kinds.table",
+    *(f"book.moisture.drops.{name}" for name in ("held", "cube", "core", "alive", "solute")),
+)
+"""The arrays that are equal if the drops of two boxes are in the same state."""
 
 _CROSSINGS, _SLOWLY = 4.0, 1.6
 """Times that a molecule crosses the box in a second at the usual pace, and the same where drops soon vanish."""
@@ -138,7 +147,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),
         "tables": curves,
-        "planned": [_AT_REST] if _has_wind(box) else planned_alone(box),
+        "planned": [_AT_REST] if _has_wind(box) else _planned_alone(box),
         "knobs": numbers,
         "units": {},
         "command": _command(prepared),
@@ -166,7 +175,7 @@ def _rate(setup: Setup, least: float) -> float:
     speed = math.sqrt(8.0 / math.pi * float(np.nanmax([kT, *parcel.wall_kT()])) / float(np.mean(parcel.mass)))
     sides = parcel.length[[0, 2]] if parcel.planar else parcel.length
     side = float(np.exp(np.log(sides).mean()))
-    crossings = _SLOWLY if any(type(each) is Nuclei for each in setup.instruments) else _CROSSINGS
+    crossings = _SLOWLY if instrument_of(setup, Nuclei) else _CROSSINGS
     return min(whole, crossings * side / speed) if speed > 0.0 else whole
 
 
@@ -203,7 +212,7 @@ def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
     setup, parcel = box.setup, box.setup.parcel
     kinds = [Air, *(type(each) for each in setup.instruments)]
     names = [name for kind, measured in MEASURED.items() if kind in kinds for name in measured]
-    absent = absent_readings(box) if box.modes.phases else set()
+    absent = _absent_readings(box) if box.modes.phases else set()
     absent |= {name for name in names if name.endswith("_theory")} - theory
     found = [(name, int(Reading[name.upper()]), _factor(name, box)) for name in names if name not in absent]
     if any(knob.name == "gravity" for knob in setup.knobs):
@@ -216,6 +225,30 @@ def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
     return found + walls
 
 
+def _absent_readings(box: LabBox) -> set[str]:
+    """Return the variables of the water that its instruments measure in other scenes, but not in this one."""
+    moisture, water = box.book.moisture, box.gauges.water
+    absent = set() if moisture.reservoir.rain > 0.0 else {"rain_mixing_ratio"}
+    absent |= set() if water.level.size else {"parcel_buoyancy"}  # type: ignore[union-attr]
+    if box.modes.drops:
+        salted = moisture.drops.solute > 0.0
+        absent |= set() if salted.any() else {"salted_drop_radius"}
+        absent |= {"pure_drop_radius"} if salted.all() else set()
+    return absent
+
+
+def _planned_alone(box: LabBox) -> list[str]:
+    """Return the curves of theory that hold only on the planned ascent: if it rains, those that depend on the loss."""
+    if (
+        not box.modes.phases
+        or instrument_of(box.setup, MoistLift) is None
+        or not box.book.moisture.reservoir.rain > 0.0
+    ):
+        return []
+    mixing = [f"{name}_mixing_ratio_theory" for name in ("humidity", "cloud_liquid_water", "rain")]
+    return ["adiabat_temperature", *mixing]
+
+
 def _factor(name: str, box: LabBox) -> float:
     """Return the factor of a variable from the engine's units to SI units, or to the unit of the page."""
     scale = box.setup.scale
@@ -226,7 +259,7 @@ def _factor(name: str, box: LabBox) -> float:
     if name == "parcel_buoyancy":
         return STANDARD_GRAVITY
     if name.endswith("drop_radius"):
-        return scale.length / next(each.width for each in box.setup.instruments if isinstance(each, Nuclei))
+        return scale.length / instrument_of(box.setup, Nuclei).width
     variable = known(name)
     units = {
         "K": scale.temperature, "Pa": scale.pressure, "m s-1": scale.velocity, "s m-1": 1.0 / scale.velocity,
@@ -293,7 +326,7 @@ def _has_wind(box: LabBox) -> bool:
 
 
 def _fixed(box: LabBox) -> dict[str, Any]:
-    """Return the coordinates that do not change: the middles of bins of speed, layers and bins of distance, in SI."""
+    """Return the coordinates that do not change, in SI: the middles of bins, and radii at which theory is drawn."""
     edges, layers = box.gauges.fast.edges * box.setup.scale.velocity, box.gauges.virial.size
     found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
     if layers:
@@ -303,7 +336,9 @@ def _fixed(box: LabBox) -> dict[str, Any]:
     if sides.columns > 1:
         edges = np.linspace(0.0, sides.width, sides.columns + 1) * box.setup.scale.length
         found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
-    return found | (fixed_axes(box) if box.modes.phases else {})
+    leaving, nuclei = (instrument_of(box.setup, kind) for kind in (Leaving, Nuclei))
+    found |= {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
+    return found if nuclei is None else found | {"radius": plain(nuclei.radius)}
 
 
 def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:

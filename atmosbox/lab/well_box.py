@@ -14,6 +14,7 @@ from atmosbox.engine.wells.vicinity import new_vicinity
 from atmosbox.engine.wells.well_events import WellGas
 from atmosbox.lab.kernels.attracting import Lists
 from atmosbox.lab.kernels.clustering import Crowd
+from atmosbox.lab.stage import instrument_of
 from atmosbox.scene.instruments import Clusters
 from atmosbox.scene.instruments.condensate import CROWDED
 from atmosbox.scene.setup import Setup
@@ -48,7 +49,7 @@ def lists(parcel: Any) -> Lists:
 def crowd(setup: Setup) -> Crowd:
     """Return the data of the drops at the start, without any drop."""
     number = setup.parcel.number
-    clusters = next((each for each in setup.instruments if type(each) is Clusters), Clusters(0))
+    clusters = instrument_of(setup, Clusters) or Clusters(0)
     return Crowd(
         members=clusters.molecules,
         crowded=CROWDED,
