@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.file.variables import known
-from atmosbox.lab.box import LabBox, lab_box
+from atmosbox.lab.box import LabBox, lab_box, refuse
 from atmosbox.lab.drawing import drawing
 from atmosbox.lab.kernels.knobs import can_set_gravity
 from atmosbox.lab.kernels.readings import MEASURED, Reading
@@ -24,12 +24,11 @@ from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared
 from atmosbox.scene.conversion import declared_unit
 from atmosbox.scene.instruments import MOMENTS, Air, Leaving, MoistLift, Nuclei
-from atmosbox.simulation.preparation import Prepared, link_start
+from atmosbox.simulation.preparation import Prepared, build, link_start
 from atmosbox.theory import WATER_MASS_RATIO
 from atmosbox.theory.constants import BOLTZMANN, STANDARD_GRAVITY
 
 if TYPE_CHECKING:
-    from atmosbox.page import Stage
     from atmosbox.scene.panels import Panel
     from atmosbox.scene.setup import Setup
 
@@ -45,6 +44,8 @@ DROP_STATE = (
 )
 """The arrays that are equal if the drops of two boxes are in the same state."""
 
+_SHOWN = ("gauges", "picture", "speeds", "layers")
+"""The data whose arrays the page reads."""
 _CROSSINGS, _SLOWLY = 4.0, 1.6
 """Times that a molecule crosses the box in a second at the usual pace, and the same where drops soon vanish."""
 _WHOLE = 60.0
@@ -82,23 +83,14 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     >>> plan["molecules"], plan["size"] == memory.size, sorted(plan["knobs"])
     (20, True, ['temperature'])
     """
-    panels, seen = running_panels(prepared), []
-
-    def look(setup: Setup) -> Stage:
-        seen.append(lab_stage(prepared, setup, panels))
-        return seen[-1][0]
-
-    box = lab_box(prepared, look)
-    setup, (stage, fast) = box.setup, seen[0]
+    panels, setup = running_panels(prepared), build(prepared)
+    refuse(prepared, setup)
+    stage, fast = lab_stage(prepared, setup, panels)
+    box = lab_box(prepared, setup, stage)
     named = {"gas": box.gas, "gauges": box.gauges, "picture": box.picture, "speeds": box.speeds, "layers": box.layers}
     named["book"] = box.book
     memory = image(arguments(box), named)
     state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
-    wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
-    wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "picture.place", "picture.colour", "picture.length"}
-    wanted |= {"picture.state", "picture.drops", "picture.many"}
-    wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _has_wind(box) else set()
-    wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)
     begun = short_run(prepared)
     readings = _readings(box, set(prepared.module.theory(begun, prepared.settings)) if box.attracts else set())
@@ -121,10 +113,10 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "pieces": [[place, len(content)] for place, content in memory.pieces],
         "blocks": memory.blocks,
         "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
-        "arrays": {name: memory.arrays[name] for name in sorted(wanted)},
+        "arrays": {name: array for name, array in memory.arrays.items() if name in state or name.startswith(_SHOWN)},
         "state": state,
         "molecules": setup.parcel.number,
-        "present": int(Reading.MOLECULES_IN_GAS) if box.modes.phases else None,
+        "present": int(Reading.MOLECULES_IN_GAS),
         "frame": setup.frame,
         "frames": setup.frames,
         "samples": setup.samples,

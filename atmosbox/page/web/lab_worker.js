@@ -81,7 +81,7 @@ class Box {
     const rate = pictures.length > 2 ? (pictures.length - 1) / (pictures.at(-1) - pictures[0]) * 1000 : 0;
     return { type: "state", playing: this.playing, pace: this.pace, time: this.now * this.plan.time,
       frame: this.frame, seed: this.seed, seeded: this.plan.seeded, finished: this.finished, ledger: reading[this.plan.ledger],
-      molecules: this.plan.present === null ? this.plan.molecules : reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
+      molecules: reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
       undo: this.past.length > 0 };
   }
 
