@@ -231,11 +231,7 @@ def _absent_readings(box: LabBox) -> set[str]:
 
 def _planned_alone(box: LabBox) -> list[str]:
     """Return the curves of theory that hold only on the planned ascent: if it rains, those that depend on the loss."""
-    if (
-        not box.modes.phases
-        or instrument_of(box.setup, MoistLift) is None
-        or not box.book.moisture.reservoir.rain > 0.0
-    ):
+    if instrument_of(box.setup, MoistLift) is None or not box.book.moisture.reservoir.rain > 0.0:
         return []
     mixing = [f"{name}_mixing_ratio_theory" for name in ("humidity", "cloud_liquid_water", "rain")]
     return ["adiabat_temperature", *mixing]
