@@ -232,15 +232,12 @@ Floats = NDArray[np.floating]
 
 _SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
 _CROWD = 800
-_BESIDE_DROPS, _BESIDE_MIST = (
-    0.4,
-    0.6,
-)  # factors on that diameter in a scene with drops or a mist, so that these stand out
+_BESIDE_DROPS, _BESIDE_MIST = 0.4, 0.6
+"""Factors on that diameter in a scene with drops or a mist, so that these stand out."""
 ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
-_BEND = (
-    0.5  # power of the speed that the colours of discs follow, because most discs are slower than half of the fastest
-)
+_BEND = 0.5
+"""Power of the speed that the colours of discs follow, because most discs are slower than half of the fastest."""
 NEIGHBOURS = 12.0
 """Upper end of the colour scale where colours show the number of neighbours."""
 _PARTICLES = {False: "molecule", True: "disc"}

@@ -132,30 +132,6 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     return [heading or f"run {number + 1}" for number, heading in enumerate(headings)]
 
 
-def footer_of(dataset: xr.Dataset) -> str:
-    """Return the small type under a page: version, scene, molecules, seed, engine.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Returns
-    -------
-    str
-        See `atmosbox.plot.caption.footer`.
-
-    Examples
-    --------
-    >>> import xarray as xr
-    >>> footer_of(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "atmosphere", "version": "1.0"}'}))
-    'atmosbox 1.0 · atmosphere'
-    """
-    from atmosbox.plot.caption import footer
-
-    return footer(dataset)
-
-
 def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str]:
     """Return sentences on what the picture leaves out or adds.
 
