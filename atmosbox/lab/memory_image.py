@@ -69,19 +69,14 @@ def parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
         yield "array", value, name
         for number in (*value.shape, *value.strides):
             yield "word", number, name
-    elif isinstance(value, tuple):
-        for field, part in zip(getattr(value, "_fields", range(len(value))), value, strict=True):
-            yield from parts(part, f"{name}.{field}")
+    elif isinstance(value, tuple | dict):
+        names = value if isinstance(value, dict) else getattr(value, "_fields", range(len(value)))
+        for field, part in zip(names, value.values() if isinstance(value, dict) else value, strict=True):
+            yield from parts(part, f"{name}.{field}" if name else str(field))
     elif isinstance(value, float | np.floating):
         yield "number", float(value), name
     else:
         yield "word", int(value), name
-
-
-def all_parts(given: Mapping[str, Any]) -> Iterator[tuple[str, Any, str]]:
-    """Yield the parts of several arguments."""
-    for name, value in given.items():
-        yield from parts(value, name)
 
 
 def _address(array: NDArray[Any]) -> int:
@@ -104,25 +99,22 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
     return sorted(found, key=lambda piece: next(k for k, at in enumerate(turn) if piece[0] <= at < piece[1]))
 
 
-def image(works: Works, named: Mapping[str, Any]) -> Image:
+def image(works: Works) -> Image:
     """Return the memory image for these kernels.
 
     Parameters
     ----------
     works
         The arguments of the kernels, by the names of both.
-    named
-        Arrays, or NamedTuples of arrays, whose addresses are listed by name.
 
     Examples
     --------
-    >>> made = image({"scale": {"values": np.arange(3.0), "by": 2}}, {"numbers": np.arange(1)})
-    >>> made.blocks["scale"] % 64, made.slots["scale"]
-    (0, {'by': 131512})
+    >>> made = image({"scale": {"values": np.arange(3.0), "by": 2}})
+    >>> made.blocks["scale"] % 64, made.slots["scale"], made.arrays
+    (0, {'by': 131448}, {'values': (131072, 3, 'float64')})
     """
-    arrays = [part for given in works.values() for kind, part, _ in all_parts(given) if kind == "array"]
-    known = [(name, part) for kind, part, name in all_parts(named) if kind == "array"]
-    held = _pieces_of_memory([*arrays, *(part for _, part in known)])
+    known = {path: part for given in works.values() for kind, part, path in parts(given, "") if kind == "array"}
+    held = _pieces_of_memory([*known.values()])
     place: dict[tuple[int, int], int] = {}
     at = BASE
     for low, high in held:
@@ -135,7 +127,7 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
         return next((to + low - first for (first, last), to in place.items() if first <= low < last), BASE)
 
     table: dict[str, tuple[int, int, str]] = {}
-    for name, array in known:
+    for name, array in known.items():
         kind = "uint8" if array.dtype.names else str(array.dtype)
         table[name] = where(array), array.nbytes if array.dtype.names else array.size, kind
     stored = ((to, ctypes.string_at(low, high - low)) for (low, high), to in place.items())
@@ -146,7 +138,7 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
         at = -(-at // _LINE) * _LINE
         blocks[name], slots[name] = at, {}
         words = bytearray(_HEAD)
-        for kind, part, path in all_parts(given):
+        for kind, part, path in parts(given, ""):
             if isinstance(given.get(path), int | float) or path.endswith(_SET):
                 slots[name][path] = at + len(words)
             number = np.float64(part) if kind == "number" else np.int64(where(part) if kind == "array" else part)
@@ -164,7 +156,7 @@ def arguments(box: LabBox) -> dict[str, dict[str, Any]]:
     >>> from atmosbox.lab.box import lab_box
     >>> from atmosbox.simulation.preparation import prepare
     >>> {name: list(given) for name, given in arguments(lab_box(prepare("temperature", {}))).items()}["warm_walls"]
-    ['gas', 'first', 'last', 'kT']
+    ['gas', 'book', 'first', 'last', 'kT']
     """
     numbers = {"until": 0.0, "most": 0, "seed": 0, "towards": 0.0, "kT": 1.0, "strength": 1.0, "share": 1.0}
     first, last = box.warmed

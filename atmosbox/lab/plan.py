@@ -87,9 +87,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     refuse(prepared, setup)
     stage, fast = lab_stage(prepared, setup, panels)
     box = lab_box(prepared, setup, stage)
-    named = {"gas": box.gas, "gauges": box.gauges, "picture": box.picture, "speeds": box.speeds, "layers": box.layers}
-    named["book"] = box.book
-    memory = image(arguments(box), named)
+    memory = image(arguments(box))
     state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
     found, numbers = _knobs(box)
     begun = short_run(prepared)
@@ -116,7 +114,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "arrays": {name: array for name, array in memory.arrays.items() if name in state or name.startswith(_SHOWN)},
         "state": state,
         "molecules": setup.parcel.number,
-        "present": int(Reading.MOLECULES_IN_GAS),
+        "present": Reading["MOLECULES_IN_GAS"].value,
         "frame": setup.frame,
         "frames": setup.frames,
         "samples": setup.samples,
@@ -131,7 +129,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "scale": None
         if box.attracts
         else {"swift": fast, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
-        "ledger": int(Reading.LEDGER_RESIDUAL),
+        "ledger": Reading["LEDGER_RESIDUAL"].value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.running.size else gauges(prepared.settings, [name for name, _, _ in readings]),
@@ -206,13 +204,13 @@ def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
     names = [name for kind, measured in MEASURED.items() if kind in kinds for name in measured]
     absent = _absent_readings(box) if box.modes.phases else set()
     absent |= {name for name in names if name.endswith("_theory")} - theory
-    found = [(name, int(Reading[name.upper()]), _factor(name, box)) for name in names if name not in absent]
+    found = [(name, Reading[name.upper()].value, _factor(name, box)) for name in names if name not in absent]
     if any(knob.name == "gravity" for knob in setup.knobs):
-        found.append(("gravity", int(Reading.GRAVITY), _factor("gravity", box)))  # type: ignore[attr-defined]
+        found.append(("gravity", Reading["GRAVITY"].value, _factor("gravity", box)))
     warm = np.isfinite(parcel.wall_kT())
     if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
         warm[slice(*box.warmed)] = True
-    first, factor = int(Reading.WALL_TEMPERATURE), _factor("wall_temperature", box)  # type: ignore[attr-defined]
+    first, factor = Reading["WALL_TEMPERATURE"].value, _factor("wall_temperature", box)
     walls = [(f"wall_temperature[{name}]", first + wall, factor) for wall, name in enumerate(_WALLS) if warm[wall]]
     return found + walls
 
@@ -247,7 +245,7 @@ def _factor(name: str, box: LabBox) -> float:
     if name == "parcel_buoyancy":
         return STANDARD_GRAVITY
     if name.endswith("drop_radius"):
-        return scale.length / instrument_of(box.setup, Nuclei).width
+        return scale.length / float(instrument_of(box.setup, Nuclei).width)
     variable = known(name)
     units = {
         "K": scale.temperature, "Pa": scale.pressure, "m s-1": scale.velocity, "s m-1": 1.0 / scale.velocity,
