@@ -39,17 +39,13 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         return 0
     substance: Substance = arrays.substance
     scale, binding = setup.scale, float(substance.binding_energy)
-    lift = instrument_of(setup, MoistLift)
-    none = np.zeros(0)
-    moment, planned, log_pressure, adiabat = none, none, none, np.zeros((0, 0))
-    level, around = none, none
+    lift, none = instrument_of(setup, MoistLift), np.zeros(0)
+    way = dict.fromkeys(("moment", "planned", "log_pressure", "level", "around"), none) | {"adiabat": np.zeros((0, 0))}
     if lift is not None:
         rains = arrays.book.moisture.reservoir.rain > 0.0
-        moment, planned, log_pressure, adiabat = (
-            _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
-        )
-        level, around = _environment(prepared, setup, lift)
-    width, empty, merged = _leaving(setup)
+        way = _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
+        way |= _environment(prepared, setup, lift)
+    leaving = _leaving(setup)
     return Hygrometer(
         before=np.zeros(2),
         met=np.zeros(4),
@@ -59,18 +55,11 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         power=float(substance.vapour_heat_capacity - substance.heat_capacity),
         binding=binding,
         critical=_CRITICAL / scale.temperature,
-        moment=moment,
-        planned=planned,
-        log_pressure=log_pressure,
-        adiabat=adiabat,
-        level=level,
-        around=around,
         mass=float(substance.mass),
-        width=width,
-        mean=np.full(width.size, math.nan),
-        error=np.full(width.size, math.nan),
-        empty=empty,
-        merged=merged,
+        mean=np.full(leaving["width"].size, math.nan),
+        error=np.full(leaving["width"].size, math.nan),
+        **way,
+        **leaving,
     )
 
 
@@ -81,16 +70,16 @@ def _levels(setup: Setup, lift: MoistLift) -> Any:
     return np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
 
 
-def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
+def _adiabat(setup: Setup, lift: MoistLift) -> dict[str, Any]:
     """Return the adiabat of a parcel that keeps its water, as a function of pressure alone: see `Hygrometer`."""
     levels = _levels(setup, lift)
     levels = finer_at_kinks(levels, lift.curve(np.exp(levels)))
-    kelvin = lift.curve(np.exp(levels))
-    unit = np.array([math.log(setup.scale.pressure)])
-    return np.zeros(1), unit * 0.0, levels[::-1] - unit, kelvin[None, ::-1] / setup.scale.temperature
+    kelvin, falling = lift.curve(np.exp(levels)), levels[::-1] - math.log(setup.scale.pressure)
+    adiabat = kelvin[None, ::-1] / setup.scale.temperature
+    return {"moment": np.zeros(1), "planned": np.zeros(1), "log_pressure": falling, "adiabat": adiabat}
 
 
-def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
+def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> dict[str, Any]:
     """Return the adiabat of a parcel whose water rains out, by moment and by pressure over planned pressure.
 
     The remaining water depends on the ascent, and is taken as planned; at another pressure the parcel has the same
@@ -111,30 +100,33 @@ def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tup
         law.parcel_path(p * np.exp(offsets), p, t, w, nuclei_heat=heat).temperature
         for p, t, w in zip(pressure, kelvin, water, strict=True)
     ]
-    planned = np.log(pressure / setup.scale.pressure)
-    return shares[middle] * setup.duration, planned, offsets, np.array(rows) / setup.scale.temperature
+    return {
+        "moment": shares[middle] * setup.duration,
+        "planned": np.log(pressure / setup.scale.pressure),
+        "log_pressure": offsets,
+        "adiabat": np.array(rows) / setup.scale.temperature,
+    }
 
 
-def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any]:
+def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> dict[str, Any]:
     """Return the virtual temperature of the environment as a function of its pressure; empty if theory lacks it."""
     levels, name = _levels(setup, lift), "environment_virtual_temperature"
     if name not in theory_at(prepared, np.exp(levels[:2])):  # two levels only, for theory is slow if it rains
-        return np.zeros(0), np.zeros(0)
+        return {"level": np.zeros(0), "around": np.zeros(0)}
     levels = finer_at_kinks(levels, theory_at(prepared, np.exp(levels))[name], 4)  # many kinks, and none is sharp
-    around = theory_at(prepared, np.exp(levels))[name]
-    return levels[::-1] - math.log(setup.scale.pressure), around[::-1] / setup.scale.temperature
+    around = theory_at(prepared, np.exp(levels))[name][::-1] / setup.scale.temperature
+    return {"level": levels[::-1] - math.log(setup.scale.pressure), "around": around}
 
 
-def _leaving(setup: Setup) -> tuple[Any, int, int]:
-    """Return the bin widths of the energy of molecules that leave, the number of empty bins, and `_merged`."""
-    leaving = instrument_of(setup, Leaving)
+def _leaving(setup: Setup) -> dict[str, Any]:
+    """Return the widths of the bins of energy of molecules that leave, which of them are empty, and `_merged`."""
+    leaving: Leaving | None = instrument_of(setup, Leaving)
     if leaving is None:
-        return np.zeros(0), 0, 1
-    bounds = bins_of(setup, leaving)
-    merged = leaving.merged
-    parcel: Any = setup.parcel
-    edges, _ = parcel.emitted_energy
-    return np.diff(bounds)[:, 0] / setup.scale.energy, len(bounds) - (edges.size - 1) // merged, merged
+        return {"width": np.zeros(0), "empty": 0, "merged": 1}
+    bounds, parcel = bins_of(setup, leaving), setup.parcel
+    edges, _ = parcel.emitted_energy  # type: ignore[attr-defined]
+    empty = len(bounds) - (edges.size - 1) // leaving.merged
+    return {"width": np.diff(bounds)[:, 0] / setup.scale.energy, "empty": empty, "merged": leaving.merged}
 
 
 def bins_of(setup: Setup, leaving: Leaving) -> Any:
