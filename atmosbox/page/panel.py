@@ -19,19 +19,9 @@ class Meaning(NamedTuple):
 
 
 def declared(name: str, time_unit: str = "ns") -> Meaning:
-    """Return the meaning of a variable from its declaration.
+    """Return the meaning of a variable from its declaration; for an undeclared name "1" and the name itself.
 
-    Parameters
-    ----------
-    name : str
-        Name of the variable; "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at a label.
-    time_unit : str
-        The unit of the elapsed time.
-
-    Returns
-    -------
-    Meaning
-        Unit and description; for an undeclared name "1" and the name itself.
+    "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at a label.
 
     Examples
     --------
@@ -46,17 +36,7 @@ def declared(name: str, time_unit: str = "ns") -> Meaning:
 
 
 def names(panels: Iterable[Panel]) -> tuple[str, ...]:
-    """Return the variables that the graphs of the page need, each once.
-
-    Parameters
-    ----------
-    panels : iterable of Panel
-        The panels of the scene. One of the kind ``discs`` needs no variables, because the stage shows the discs.
-
-    Returns
-    -------
-    tuple of str
-        Names, in order.
+    """Return the variables that the graphs of the page need, each once, in order; the kind ``discs`` needs none.
 
     Examples
     --------

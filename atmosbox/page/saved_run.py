@@ -39,17 +39,7 @@ class Page(NamedTuple):
 
 
 def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
-    """Return the data of the page of one or several runs.
-
-    Parameters
-    ----------
-    runs : sequence of xarray.Dataset
-        The runs, with their molecules. If there are several, the heading of each names what differs.
-
-    Returns
-    -------
-    list of Page
-        The data of each run.
+    """Return the data of the page of one or several runs with their molecules; headings name what differs.
 
     Raises
     ------

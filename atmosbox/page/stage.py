@@ -33,20 +33,9 @@ class Share(NamedTuple):
 
 
 def share(molecules: int, frames: int, runs: int = 1) -> Share:
-    """Return how many molecules and frames of a run fit into a page.
+    """Return how many molecules and frames of a run fit into a page of several runs.
 
-    Parameters
-    ----------
-    molecules, frames : int
-        Numbers of molecules and frames of the run.
-    runs : int
-        Number of runs on the page.
-
-    Returns
-    -------
-    Share
-        The numbers that are kept. First, molecules beyond `MOST` are left out, then frames, down to 240, then more
-        molecules.
+    First, molecules beyond `MOST` are left out, then frames, down to 240, then more molecules.
 
     Examples
     --------
@@ -59,21 +48,9 @@ def share(molecules: int, frames: int, runs: int = 1) -> Share:
 
 
 def chosen(count: int, most: int, water: NDArray[np.bool_] | None = None) -> Indices:
-    """Return which molecules are drawn, evenly spaced in the list of all molecules.
+    """Return which molecules are drawn, in ascending order, evenly spaced in the list of all molecules.
 
-    Parameters
-    ----------
-    count : int
-        Number of molecules.
-    most : int
-        Greatest number of molecules that are drawn.
-    water : (molecule,), optional
-        Whether each molecule is water. All molecules of water are drawn if they are at most half of ``most``.
-
-    Returns
-    -------
-    ndarray of int
-        Indices of the molecules that are drawn, in ascending order.
+    All molecules of water are drawn if they are at most half of ``most``.
 
     Examples
     --------
@@ -162,11 +139,6 @@ class Box:
 def page_box(seen: Molecules) -> Box:
     """Return the box of a saved run.
 
-    Parameters
-    ----------
-    seen : Molecules
-        The molecules of the run and their box.
-
     Examples
     --------
     >>> import numpy as np
@@ -183,17 +155,7 @@ def page_box(seen: Molecules) -> Box:
 
 
 def length_unit(length: float) -> str:
-    """Return the unit in which a length is shown.
-
-    Parameters
-    ----------
-    length : float
-        The length [m].
-
-    Returns
-    -------
-    str
-        The largest of nm, µm, mm, m and km that is not longer than the length; nm for shorter lengths.
+    """Return the unit in which a length [m] is shown: the largest that is not longer; nm for shorter lengths.
 
     Examples
     --------
@@ -205,19 +167,7 @@ def length_unit(length: float) -> str:
 
 
 def length_text(length: float, figures: int = 2) -> str:
-    """Return a length as text.
-
-    Parameters
-    ----------
-    length : float
-        The length [m].
-    figures : int
-        Number of significant digits.
-
-    Returns
-    -------
-    str
-        The number and its unit.
+    """Return a length [m] as text, with some significant digits.
 
     Examples
     --------

@@ -23,17 +23,7 @@ _PARTS = {"Modelled": "modelled", "Prescribed": "prescribed", "Left out": "left_
 
 
 def card_of(text: str) -> dict[str, str]:
-    """Return what the docstring of a scene says of its model, in parts.
-
-    Parameters
-    ----------
-    text : str
-        The docstring.
-
-    Returns
-    -------
-    dict of str
-        Of ``modelled``, ``prescribed``, ``left_out`` and ``exaggerated`` those that there are.
+    """Return what the docstring of a scene says of its model, by those of the names in `_PARTS` that it has.
 
     Examples
     --------
@@ -50,17 +40,7 @@ def card_of(text: str) -> dict[str, str]:
 
 
 def story_of(dataset: xr.Dataset) -> str:
-    """Return what a scene is about: its model card up to the word "Modelled".
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run, with the attribute ``comment``.
-
-    Returns
-    -------
-    str
-        The sentences.
+    """Return what a scene is about: the model card of a run, its attribute ``comment``, up to the word "Modelled".
 
     Examples
     --------
@@ -72,17 +52,7 @@ def story_of(dataset: xr.Dataset) -> str:
 
 
 def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
-    """Return the settings of a run as text.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The run.
-
-    Returns
-    -------
-    list of tuple of str
-        Names and values; the values have units if the scene comes with atmosbox.
+    """Return names and values of the settings of a run as text, with units if the scene comes with atmosbox.
 
     Examples
     --------
@@ -102,15 +72,7 @@ def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
 def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     """Return a heading for each run that names only what differs between the runs.
 
-    Parameters
-    ----------
-    runs : sequence of xarray.Dataset
-        The runs.
-
-    Returns
-    -------
-    list of str
-        The headings. Runs of different scenes have the titles of their scenes; runs that do not differ are numbered.
+    Runs of different scenes have the titles of their scenes; runs that do not differ are numbered.
 
     Examples
     --------
@@ -133,21 +95,7 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
 
 
 def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str]:
-    """Return sentences on what the picture leaves out or adds.
-
-    Parameters
-    ----------
-    seen : Molecules
-        The run.
-    stage : mapping
-        The record of its stage.
-    frames : int
-        Number of frames that the page holds.
-
-    Returns
-    -------
-    list of str
-        The sentences.
+    """Return sentences on what the picture of a run leaves out or adds; ``stage`` is the record of its stage.
 
     Examples
     --------
