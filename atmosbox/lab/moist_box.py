@@ -40,7 +40,8 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
     substance: Substance = arrays.substance
     scale, binding = setup.scale, float(substance.binding_energy)
     lift, none = instrument_of(setup, MoistLift), np.zeros(0)
-    way = dict.fromkeys(("moment", "planned", "log_pressure", "level", "around"), none) | {"adiabat": np.zeros((0, 0))}
+    way: dict[str, Any] = dict.fromkeys(("moment", "planned", "log_pressure", "level", "around"), none)
+    way["adiabat"] = np.zeros((0, 0))
     if lift is not None:
         rains = arrays.book.moisture.reservoir.rain > 0.0
         way = _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)

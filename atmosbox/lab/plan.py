@@ -80,8 +80,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> plan, memory, _ = lab_plan(prepare("temperature", {"molecules": 20}))
-    >>> plan["molecules"], plan["size"] == memory.size, sorted(plan["knobs"])
-    (20, True, ['temperature'])
+    >>> plan["frames"], plan["size"] == memory.size, sorted(plan["knobs"])
+    (1000, True, ['temperature'])
     """
     panels, setup = running_panels(prepared), build(prepared)
     refuse(prepared, setup)
@@ -113,7 +113,6 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
         "arrays": {name: array for name, array in memory.arrays.items() if name in state or name.startswith(_SHOWN)},
         "state": state,
-        "molecules": setup.parcel.number,
         "present": Reading["MOLECULES_IN_GAS"].value,
         "frame": setup.frame,
         "frames": setup.frames,
