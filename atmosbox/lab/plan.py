@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,8 +45,8 @@ DROP_STATE = (
 )
 """The arrays that are equal if the drops of two boxes are in the same state."""
 
-_SHOWN = ("gauges", "picture", "speeds", "layers")
-"""The data whose arrays the page reads."""
+_SHOWN = re.compile(r"picture\.|gauges\.reading|.*\.(mean|error|adiabat|wind)")
+"""The names of the arrays that the page reads, besides those of the state."""
 _CROSSINGS, _SLOWLY = 4.0, 1.6
 """Times that a molecule crosses the box in a second at the usual pace, and the same where drops soon vanish."""
 _WHOLE = 60.0
@@ -111,7 +112,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "pieces": [[place, len(content)] for place, content in memory.pieces],
         "blocks": memory.blocks,
         "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
-        "arrays": {name: array for name, array in memory.arrays.items() if name in state or name.startswith(_SHOWN)},
+        "arrays": {name: array for name, array in memory.arrays.items() if name in state or _SHOWN.match(name)},
         "state": state,
         "present": Reading["MOLECULES_IN_GAS"].value,
         "frame": setup.frame,
