@@ -25,12 +25,7 @@ _GAUGES = (
 def gauges(settings: SceneSettings, measured: Collection[str]) -> list[dict[str, Any]]:
     """Return the gauges of a box, as data for the page.
 
-    Parameters
-    ----------
-    settings
-        The settings; a scene whose temperature is set in kelvin gets a thermometer in kelvin.
-    measured
-        Names of the variables that are measured.
+    A scene whose temperature is set in kelvin gets a thermometer in kelvin; ``measured`` are the names of variables.
 
     Examples
     --------
@@ -76,14 +71,7 @@ def setting_controls(
 ) -> list[dict[str, Any]]:
     """Return the controls of settings, as data for the page: sliders, switches and lists of choices.
 
-    Parameters
-    ----------
-    parameters
-        The settings of the scene; free texts are left out.
-    values
-        Their present values.
-    without
-        Names of other settings that are left out, such as those that have a knob.
+    Free texts are left out, and the settings ``without``, such as those that have a knob.
 
     Examples
     --------

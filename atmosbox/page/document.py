@@ -35,22 +35,8 @@ def view_page(
 ) -> str:
     """Return the complete page that shows saved runs.
 
-    Parameters
-    ----------
-    runs : sequence of mapping
-        The record of each run: its ``stage``, its ``values`` by name, and the other entries of
-        `atmosbox.page.saved_run.Page`.
-    frames : sequence of str
-        The frames of each run, as `atmosbox.page.frame.pack` returns them.
-    theme : {"auto", "light", "dark"}
-        Colours of the page; ``auto`` takes those that the reader's system prefers.
-    language : {"auto", "en", "de", "es"}
-        Language of the page; ``auto`` takes the first language of the reader's browser that the page has.
-
-    Returns
-    -------
-    str
-        The HTML, which needs no other file and no network.
+    ``runs`` are the records of `atmosbox.page.saved_run.Page`, ``frames`` those of each run as
+    `atmosbox.page.frame.pack` returns them; ``theme`` and ``language`` are among `THEMES` and `LANGUAGES`.
 
     Examples
     --------

@@ -59,21 +59,8 @@ def panel_record(
 ) -> dict[str, Any]:
     """Return a panel as data for the page.
 
-    Parameters
-    ----------
-    panel : Panel
-        The panel, of any kind but ``discs``.
-    meaning : callable
-        Function that returns the `Meaning` of a variable by its name.
-    sentences : sequence of str
-        The headline numbers of the panel, as sentences.
-    marks : dict of str to float, optional
-        Pressures that a skew-T marks [hPa].
-
-    Returns
-    -------
-    dict
-        The panel in types that JSON can hold. A value of a line is shown as ``value * factor + offset``.
+    A value of a line is shown as ``value * factor + offset``. ``meaning`` returns the `Meaning` of a variable,
+    ``sentences`` are the headline numbers of the panel, and ``marks`` pressures that a skew-T marks [hPa].
 
     Raises
     ------
