@@ -15,20 +15,7 @@ from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.start.overlap import bins_of, spheres_of
 from atmosbox.lab.kernels.pairwise import DEPTH
-from atmosbox.lab.kernels.starting import (
-    ALONG_X,
-    AS_PLACED,
-    AT_RANDOM,
-    PLACES,
-    SPINS,
-    VELOCITIES,
-    Cleared,
-    Start,
-    can_start,
-)
-
-_DRAWN = {"position": PLACES, "velocity": VELOCITIES, "rotational_energy": SPINS}
-_NUMBERED = {"as placed": AS_PLACED, "at random": AT_RANDOM, "along x": ALONG_X}
+from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start, can_start
 
 
 def is_drawn(parcel: Any) -> bool:
@@ -77,8 +64,8 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
     centre = np.array(places.centre, np.float64).reshape(-1, 3)
     has_layers = arrays.modes.gravity and arrays.modes.rows
     return Start(
-        parts=np.array([_DRAWN[part.draws] for part in declared.parts], np.int64),
-        numbered=_NUMBERED[places.numbered],
+        parts=np.array([DRAWN.index(part.draws) for part in declared.parts], np.int64),
+        numbered=NUMBERED.index(places.numbered),
         scale_height=float(places.scale_height or 0.0),
         planar=int(planar),
         speed=float(moving.speed) if equal else 0.0,

@@ -24,10 +24,12 @@ from atmosbox.engine.start.overlap import clear
 from atmosbox.engine.start.scatter import SERIES, crowd, scatter
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
+DRAWN = ("position", "velocity", "rotational_energy")
+"""The parts of a start that are drawn; `PLACES`, `VELOCITIES`, `SPINS` are their numbers."""
 PLACES, VELOCITIES, SPINS = range(3)
-"""The parts of a start that are drawn: positions, velocities, rotational energies."""
-AS_PLACED, AT_RANDOM, ALONG_X = range(3)
-"""How molecules are numbered after they have been placed: see `Scattered`."""
+NUMBERED = ("as placed", "at random", "along x")
+"""How molecules are numbered after they have been placed, see `Scattered`; `AT_RANDOM`, `ALONG_X` are numbers of it."""
+_, AT_RANDOM, ALONG_X = range(3)
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
@@ -46,11 +48,11 @@ class Cleared(NamedTuple):
 class Start(NamedTuple):
     """The data with which the molecules of a box are drawn and placed.
 
-    ``parts : (part,)`` says what is drawn, in order: `PLACES`, `VELOCITIES`, `SPINS`; ``numbered`` is one of
-    `AS_PLACED`, `AT_RANDOM`, `ALONG_X`; ``scale_height`` that of the air as it is placed [length], 0 if it is spread
-    evenly; ``planar`` 1 in a plane gas, else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds
-    differ. ``twice`` is twice the kinetic energy of all molecules [energy], ``weight`` their mass, and ``rotating``
-    their rotational energy [energy]; ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of
+    ``parts : (part,)`` are the numbers of what is drawn, in order, and ``numbered`` is one of those in `NUMBERED`;
+    ``scale_height`` is that of the air as it is placed [length], 0 if it is spread evenly; ``planar`` 1 in a plane gas,
+    else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds differ. ``twice`` is twice the kinetic
+    energy of all molecules [energy], ``weight`` their mass, and ``rotating`` their rotational energy [energy];
+    ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of
     rotation [energy], ``condensed`` the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the
     warmest wall [length/time], in a box with liquid.
 
