@@ -21,7 +21,6 @@ from atmosbox import theory
 from atmosbox.engine import FollowPressure, ParcelSet, Piston, Specular
 from atmosbox.file.export import tables
 from atmosbox.lab.box import lab_box
-from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.kernel_table import kernels
 from atmosbox.lab.plan import lab_plan
 from atmosbox.plot.curve import curve
@@ -110,7 +109,7 @@ def page_and_python():
             call["pass_time"](box.gas, box.ascent, box.book, box.layout, setup.moment(frame, sample), 10**9)
             call["sample"](box.gas, box.ascent, box.book, box.gauges)
         call["end_frame"](box.gas, box.ascent, box.book, box.gauges)
-        pages.append([float(box.gauges.reading[n]) for n in (Reading.TIME, Reading.KT, Reading.PRESSURE)])
+        pages.append([float(each) for each in box.gauges.reading[:3]])
         recording.advance(lambda now: None)
     rows = [[row["air_temperature"], row["air_pressure"]] for row in air._rows]
     return pages, [[t, *row] for t, row in zip(recording.times[1:], rows, strict=True)], setup.parcel.contacts

@@ -117,7 +117,7 @@ def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]
     boxes = [(scene, SCENES[scene]) for scene in scenes]
     for scene, settings in [*boxes, *(each for each in BESIDE if each[0] in scenes)]:
         box = lab_box(prepare(scene, settings, engine="exact"))
-        types = {name: tuple(map(numba.typeof, given)) for name, given in arguments(box).items()}
+        types = {name: tuple(map(numba.typeof, given.values())) for name, given in arguments(box).items()}
         found[box.module] = box.modes, box.attracts, types
     return found
 

@@ -23,35 +23,22 @@ from atmosbox.lab.kernels.flowing import Flow as Wind
 from atmosbox.lab.kernels.flowing import can_flow
 from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.picture import Picture
+from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.kernels.starting import Start
+from atmosbox.lab.kernels.sums import Bins, Sum
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_box import hygrometer, liquid_picture
+from atmosbox.lab.stage import instrument_of
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_box import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
-from atmosbox.scene.instruments import (
-    MOMENTS,
-    Air,
-    Clusters,
-    Discs,
-    Flow,
-    Layers,
-    Leaving,
-    Lift,
-    Mixing,
-    MoistLift,
-    Nuclei,
-    Speeds,
-    Water,
-)
+from atmosbox.scene.instruments import MOMENTS, Air, Discs, Flow, Layers, Mixing, Speeds
 from atmosbox.scene.instruments.flow import LOW, modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from atmosbox.page import Stage
     from atmosbox.scene.setup import Setup
     from atmosbox.scene.units import Scale
@@ -60,9 +47,9 @@ _CORNERS = 4
 _SPARE = 1.5
 _LONGER = 4
 """Factor by which the rows of cells can grow, because memory is reserved for that."""
-_INSTRUMENTS = (Air, Clusters, Discs, Flow, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
+_INSTRUMENTS = (*MEASURED, Layers, Speeds)
+_ALIKE, _ANY_SPEED, _UNMIXED = np.zeros(0, np.int64), np.zeros(1), Mixing(np.zeros(0, np.bool_), {}, 0)
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
-_READINGS = 64
 _DENSITIES = 129
 """Number of densities at which the adiabatic lapse rate over gravity is tabulated, up to that at which discs freeze."""
 _FRESH = 0.2
@@ -124,7 +111,7 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     """
     parcel: Any = setup.parcel
     unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
-    if not _is_measured(_of(setup, Flow), _of(setup, Layers), parcel):
+    if not _is_measured(instrument_of(setup, Flow), instrument_of(setup, Layers), parcel):
         unknown.append(Flow.__name__)
     why = None
     if str(prepared.engine) != "exact":
@@ -147,15 +134,17 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
     return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow.shape == parts
 
 
-def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> LabBox:
+def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None = None) -> LabBox:
     """Return the box of a scene for a page.
 
     Parameters
     ----------
     prepared
         The scene.
-    picture
-        Function that returns what the page shows of a box; without it three molecules are shown, enough to compile.
+    setup
+        Its box, if it has been built.
+    stage
+        What the page shows of the box; without it three molecules are shown, enough to compile.
 
     Raises
     ------
@@ -165,16 +154,18 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.counts.size
+    >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.speeds.size
     58
     """
-    setup = build(prepared)
+    setup = build(prepared) if setup is None else setup
     refuse(prepared, setup)
     parcel: Any = setup.parcel
     arrays = parcel.arrays()
-    stage = None if picture is None else picture(setup)
     attracts = type(parcel) is AttractingParcelSet
     layout: Any = lists(parcel) if attracts else _layout(arrays)
+    gauges, layers = _gauges(prepared, setup), instrument_of(setup, Layers)
+    # a block of the profiles is twice as long as the correlation time of the column's energy: nearly independent
+    rows, memory = gauges.parts.rows, 0.0 if layers is None else layers.memory
     box = LabBox(
         prepared,
         setup,
@@ -182,8 +173,9 @@ def lab_box(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None)
         _ascent(arrays.ascent),
         arrays.book,
         layout,
-        _gauges(prepared, setup),
-        *_averages(setup),
+        gauges,
+        _average(gauges.speeds.size, gauges.speeds.size, 1),
+        _average(5 * rows, 4 * rows, max(1, math.ceil(2.0 * memory / setup.frame))),
         _picture(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
         start_of(parcel, layout),
@@ -246,63 +238,69 @@ def _ascent(ascent: Any) -> Any:
     return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment), start_energy=0.0)
 
 
-def _of(setup: Setup, kind: type) -> Any:
-    return next((each for each in setup.instruments if type(each) is kind), None)
-
-
 def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
     """Return the data of the instruments at their start, with memory for further readings."""
-    air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
-    edges = np.zeros(1) if speeds is None else speeds.edges
-    number = 0 if layers is None else layers.number
-    half = np.zeros(0, np.int64)
-    if discs is not None:
-        mass = setup.parcel.mass
-        half = np.ones(mass.size, np.int64)
-        half[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
+    parcel: Any = setup.parcel
+    air, discs = instrument_of(setup, Air) or Air(), instrument_of(setup, Discs)
+    edges = (instrument_of(setup, Speeds) or Speeds(np.zeros(1))).edges
+    layers, mixing = instrument_of(setup, Layers) or Layers(0), instrument_of(setup, Mixing) or _UNMIXED
+    mass, wide, number, rows = parcel.mass, float(parcel.length[0]), len(Reading) + 5, layers.number
+    kind, columns, low = mixing.right.astype(np.int64), mixing.bins, 0.0
+    if columns:
+        low = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
+    elif discs is not None:
+        kind, columns = np.ones(mass.size, np.int64), 1
+        kind[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
     return Gauges(
-        reading=np.zeros(_READINGS),
-        warmth=np.zeros(2),
+        reading=np.zeros(number),
+        means=np.zeros(number),
+        samples=np.zeros(1),
         before=np.zeros(8),
-        barometer=0 if air is None or air.barometer == "all" else 4,
-        edges=edges,
-        counts=np.zeros(edges.size - 1),
+        barometer=0 if air.barometer == "all" else 4,
+        whole=_bins(wide),
+        parts=_bins(wide, rows, layers.columns),
+        fast=_bins(wide, int(edges.size > 1), edges=edges),
+        sides=_bins(wide - 2.0 * low, 1, columns, low, kind=kind),
         speeds=np.zeros(edges.size - 1),
-        sums=np.zeros((4, number)),
-        layers=np.zeros(5 * number),
-        scratch=np.zeros((6, number if layers is None else number * layers.columns)),
-        half=half,
-        running=np.zeros(8),
-        mixture=_mixture(setup),
+        layers=np.zeros(5 * rows),
+        virial=np.zeros(rows),
+        running=np.zeros(0 if discs is None else 7),
+        mixture=_mixture(mixing, setup.frame),
         water=hygrometer(prepared, setup),
         flow=_wind(setup),
     )
 
 
+def _bins(
+    width: float, rows: int = 1, columns: int = 1, low: float = 0.0, *, kind: Any = _ALIKE, edges: Any = _ANY_SPEED
+) -> Bins:
+    """Return bins of molecules; a scene without an instrument that needs them has no row, or no column, of them."""
+    number = rows * columns * max(edges.size - 1, 1) * (2 if kind.size else 1)
+    return Bins(kind, rows, columns, low, width, edges, np.zeros((number, len(Sum))))
+
+
 def _wind(setup: Setup) -> Any:
     """Return the data of the wind; empty arrays in a scene that does not measure it, 0 if no kernel can."""
-    flow, parcel = _of(setup, Flow), setup.parcel
+    flow, parcel = instrument_of(setup, Flow) or Flow(0, 0, 0), setup.parcel
     if not can_flow(parcel.arrays().modes):  # type: ignore[attr-defined]
         return 0
-    rows, columns = (0, 0) if flow is None else flow.shape
-    high, phases, lapse, dense = np.zeros(0), np.zeros((0, 0)), np.zeros(2), 1.0
-    if flow is not None:
-        high, across = modes_of_flow(rows, columns, periodic=parcel.periodic[0])
-        phases = np.concatenate(across)
+    rows, columns = flow.shape
+    lapse, dense = np.zeros(2), 1.0
+    high, across = modes_of_flow(rows, columns, periodic=parcel.periodic[0])
+    if rows:
         gas = law.Gas(2 if parcel.planar else 3, float(parcel.diameter[0]))
         dense = law.FREEZING_PACKING_FRACTION_DISCS / float(law.packing_fraction_discs(1.0, gas.diameter))
         lapse = np.array(law.adiabatic_lapse_rate(gas, np.linspace(0.0, dense, _DENSITIES), 1.0))
     return Wind(
         sums=np.zeros((3, rows * columns)),
-        upright=np.zeros(rows * columns),
-        total=np.zeros(4),
+        frames=np.zeros(1),
         high=high,
-        wave=phases,
+        wave=np.concatenate(across),
         column=np.zeros((2, columns)),
-        tagged=np.zeros(0 if flow is None else parcel.number, np.int64),
-        release=0 if flow is None else flow.release,
+        tagged=np.zeros(parcel.number if rows else 0, np.int64),
+        release=flow.release,
         low=LOW * float(parcel.length[2]),
-        near=LOW if flow is not None and flow.chimney else 1.0,
+        near=LOW if flow.chimney else 1.0,
         wind=np.zeros((2, rows * columns)),
         fresh=_FRESH,
         lapse=lapse,
@@ -311,48 +309,25 @@ def _wind(setup: Setup) -> Any:
     )
 
 
-def _mixture(setup: Setup) -> Mixture:
+def _mixture(mixing: Mixing, frame: float) -> Mixture:
     """Return the data of two gases that mix; empty arrays in a scene without them."""
-    instrument, parcel = _of(setup, Mixing), setup.parcel
-    moments = [] if instrument is None else list(instrument.moments.values())
-    bins = 0 if instrument is None else instrument.bins
-    known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument.moments]
-    radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
+    number = len(mixing.moments) * mixing.bins
+    known = [expected_share(mixing.bins, MOMENTS[name]) for name in mixing.moments]
     return Mixture(
-        right=np.zeros(0, np.int64) if instrument is None else instrument.right.astype(np.int64),
-        low=radius,
-        width=float(parcel.length[0]) - 2.0 * radius,
-        moments=np.array(moments, float),
-        frame=setup.frame,
-        off=np.full(len(moments), math.inf),
+        moments=np.array(list(mixing.moments.values()), float),
+        frame=frame,
+        off=np.full(len(known), math.inf),
         expected=np.concatenate([np.zeros(0), *(each[0] for each in known)]),
         scatter=np.concatenate([np.zeros(0), *(each[1] for each in known)]),
-        mean=np.full(len(moments) * bins, math.nan),
-        error=np.full(len(moments) * bins, math.nan),
-        counts=np.zeros((2, bins)),
+        mean=np.full(number, math.nan),
+        error=np.full(number, math.nan),
     )
 
 
-def _averages(setup: Setup) -> tuple[Average, Average]:
-    """Return the averages of the shares by speed, and of the profiles by height.
-
-    A block of the profiles is twice as long as the correlation time of the column's energy, so that blocks are nearly
-    independent.
-    """
-    speeds, layers = _of(setup, Speeds), _of(setup, Layers)
-    shares = 0 if speeds is None else speeds.edges.size - 1
-    profiles = 0 if layers is None else 5 * layers.number
-    memory = 0.0 if layers is None else layers.memory
-    return _average(shares, 1), _average(profiles, max(1, math.ceil(2.0 * memory / setup.frame)))
-
-
-def _average(number: int, frames: int) -> Average:
-    return Average(
-        np.zeros((BLOCKS + 1, number)),
-        np.array([0, 0, frames, frames]),
-        np.full(number, np.nan),
-        np.full(number, np.nan),
-    )
+def _average(summed: int, number: int, frames: int) -> Average:
+    """Return averages of ``number`` quantities from ``summed`` sums, in blocks of some frames."""
+    state = np.array([0, 0, frames, frames])
+    return Average(np.zeros((BLOCKS + 2, summed)), state, np.full(number, np.nan), np.full(number, np.nan))
 
 
 def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:

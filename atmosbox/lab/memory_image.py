@@ -16,6 +16,7 @@ rows of cells before the molecules have been placed, is not stored.
 from __future__ import annotations
 
 import ctypes
+import inspect
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -23,8 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.lab.box import LabBox
-from atmosbox.lab.kernels.knobs import can_set_gravity, has_moist_knobs
-from atmosbox.lab.kernels.starting import can_start
+from atmosbox.lab.kernels.kernel_table import kernels
 
 BASE = 0x20000
 _LINE = 64
@@ -32,7 +32,7 @@ _HEAD = 256
 _SET = (".highest", ".gravity")
 """Numbers inside arguments that a page sets, besides whole arguments: the end of the scale of speeds, and gravity."""
 
-Works = Mapping[str, tuple[Any, ...]]
+Works = Mapping[str, Mapping[str, Any]]
 
 
 class Image(NamedTuple):
@@ -47,7 +47,7 @@ class Image(NamedTuple):
     blocks : dict of str to int
         Address of the arguments of each kernel.
     slots : dict of str to dict of str to int
-        Address of each number that a page may set, by its path: "4" is the fifth argument of a kernel.
+        Address of each number that a page may set, by its path: the name of an argument of a kernel, or of its part.
     arrays : dict of str to (int, int, str)
         Address, number of elements and type of each array, by the path of its name: "gas.molecules".
     """
@@ -69,8 +69,9 @@ def parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
         yield "array", value, name
         for number in (*value.shape, *value.strides):
             yield "word", number, name
-    elif isinstance(value, tuple):
-        for field, part in zip(getattr(value, "_fields", range(len(value))), value, strict=True):
+    elif isinstance(value, tuple | dict):
+        names = value if isinstance(value, dict) else getattr(value, "_fields", range(len(value)))
+        for field, part in zip(names, value.values() if isinstance(value, dict) else value, strict=True):
             yield from parts(part, f"{name}.{field}" if name else str(field))
     elif isinstance(value, float | np.floating):
         yield "number", float(value), name
@@ -98,26 +99,22 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
     return sorted(found, key=lambda piece: next(k for k, at in enumerate(turn) if piece[0] <= at < piece[1]))
 
 
-def image(works: Works, named: Mapping[str, Any]) -> Image:
+def image(works: Works) -> Image:
     """Return the memory image for these kernels.
 
     Parameters
     ----------
     works
-        The arguments of the kernels, by their names.
-    named
-        Arrays, or NamedTuples of arrays, whose addresses are listed by name.
+        The arguments of the kernels, by the names of both.
 
     Examples
     --------
-    >>> made = image({"double": (np.arange(3.0), 2)}, {"numbers": np.arange(1)})
-    >>> made.blocks["double"] % 64, made.slots["double"]
-    (0, {'1': 131512})
+    >>> made = image({"scale": {"values": np.arange(3.0), "by": 2}})
+    >>> made.blocks["scale"] % 64, made.slots["scale"], made.arrays
+    (0, {'by': 131448}, {'values': (131072, 3, 'float64')})
     """
-    arrays = [part for given in works.values() for kind, part, _ in parts(given, "") if kind == "array"]
-    known = [(name, part) for kind, part, name in parts(tuple(named.values()), "") if kind == "array"]
-    titles = list(named)
-    held = _pieces_of_memory([*arrays, *(part for _, part in known)])
+    known = {path: part for given in works.values() for kind, part, path in parts(given, "") if kind == "array"}
+    held = _pieces_of_memory([*known.values()])
     place: dict[tuple[int, int], int] = {}
     at = BASE
     for low, high in held:
@@ -130,11 +127,9 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
         return next((to + low - first for (first, last), to in place.items() if first <= low < last), BASE)
 
     table: dict[str, tuple[int, int, str]] = {}
-    for name, array in known:
-        first, _, rest = name.partition(".")
-        title = ".".join(part for part in (titles[int(first)], rest) if part)
+    for name, array in known.items():
         kind = "uint8" if array.dtype.names else str(array.dtype)
-        table[title] = where(array), array.nbytes if array.dtype.names else array.size, kind
+        table[name] = where(array), array.nbytes if array.dtype.names else array.size, kind
     stored = ((to, ctypes.string_at(low, high - low)) for (low, high), to in place.items())
     pieces = [(to, content) for to, content in stored if any(content)]
     blocks: dict[str, int] = {}
@@ -144,8 +139,7 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
         blocks[name], slots[name] = at, {}
         words = bytearray(_HEAD)
         for kind, part, path in parts(given, ""):
-            whole = path.isdigit() and not isinstance(given[int(path)], np.ndarray)
-            if kind != "array" and (whole or path.endswith(_SET)):
+            if isinstance(given.get(path), int | float) or path.endswith(_SET):
                 slots[name][path] = at + len(words)
             number = np.float64(part) if kind == "number" else np.int64(where(part) if kind == "array" else part)
             words += number.tobytes()
@@ -154,54 +148,18 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
     return Image(pieces, at, blocks, slots, table)
 
 
-def arguments(box: LabBox) -> dict[str, tuple[Any, ...]]:
-    """Return the arguments of the kernels of a box by name.
+def arguments(box: LabBox) -> dict[str, dict[str, Any]]:
+    """Return the arguments of the kernels of a box, by the names of the kernels and of their parameters.
 
     Examples
     --------
     >>> from atmosbox.lab.box import lab_box
-    >>> from atmosbox.lab.kernels.kernel_table import kernels
     >>> from atmosbox.simulation.preparation import prepare
-    >>> box = lab_box(prepare("temperature", {"molecules": 20}))
-    >>> set(arguments(box)) == set(kernels(box.modes, wells=box.attracts))
-    True
+    >>> {name: list(given) for name, given in arguments(lab_box(prepare("temperature", {}))).items()}["warm_walls"]
+    ['gas', 'book', 'first', 'last', 'kT']
     """
-    gas, ascent, book, layout, gauges = box.gas, box.ascent, box.book, box.layout, box.gauges
-    found: dict[str, tuple[Any, ...]] = {}
-    if box.modes.ascends:
-        found["lead"] = (gas, ascent, book, 0.0)
-    if can_start(box.modes):
-        found["start"] = (gas, ascent, book, box.start, 0)
-    if can_set_gravity(box.modes) and not box.attracts:
-        found["set_gravity"] = (gas, book, box.start, gauges, gas.box.gravity)
-    found |= {
-        "place": (gas, book, layout),
-        "pass_time": (gas, ascent, book, layout, 0.0, 0),
-        "begin": (gas, ascent, book, gauges),
-        "sample": (gas, ascent, book, gauges),
-        "end_frame": (gas, ascent, book, gauges),
-        "note_frame": (gas, gauges, box.speeds, box.layers),
-        "begin_averages_anew": (box.speeds, box.layers),
-        "look": (gas, book, box.picture),
-    } | (_knobs(box) if box.modes.phases else {"warm_walls": (gas.walls, 0, 6, 1.0)})
-    if box.attracts:
-        found |= {
-            "begin": (gas, ascent, book, gauges, box.crowd),
-            "end_frame": (gas, ascent, book, gauges, layout, box.crowd),
-            "look": (gas, book, layout, box.crowd, box.picture),
-            "attract": (gas, book, layout, 1.0),
-            "warm_bath": (gas.bath, 1.0),
-        }
-    return found
-
-
-def _knobs(box: LabBox) -> dict[str, tuple[Any, ...]]:
-    """Return the arguments of the kernels that the knobs of a box with liquid call."""
-    if not has_moist_knobs(box.modes):
-        return {}
-    gas, book = box.gas, box.book
-    found: dict[str, tuple[Any, ...]] = {
-        "warm_walls": (gas, book, *box.warmed, 1.0),
-        "smooth_walls": (gas, *box.warmed),
-    }
-    return found | ({"cover_pool": (gas, book, 1.0)} if box.modes.pool else {})
+    numbers = {"until": 0.0, "most": 0, "seed": 0, "towards": 0.0, "kT": 1.0, "strength": 1.0, "share": 1.0}
+    first, last = box.warmed
+    given = box._asdict() | numbers | {"begun": box.start, "gravity": 0.0, "first": first, "last": last}
+    works = kernels(box.modes, wells=box.attracts)
+    return {name: {each: given[each] for each in inspect.signature(work).parameters} for name, work in works.items()}

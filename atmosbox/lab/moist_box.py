@@ -9,7 +9,9 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine.liquid.substance import Substance
-from atmosbox.lab.kernels.hygrometer import Hygrometer, Sampled
+from atmosbox.lab.kernels.hygrometer import Hygrometer
+from atmosbox.lab.stage import instrument_of
+from atmosbox.lab.theory_table import finer_at_kinks, theory_at
 from atmosbox.page.frame import POOL, RAIN, SWELLING, places
 from atmosbox.scene.instruments import Leaving, MoistLift
 from atmosbox.scene.instruments.water import _CRITICAL
@@ -23,8 +25,6 @@ if TYPE_CHECKING:
 
 _WAY = 801
 """Number of values in the table of the adiabat of a parcel."""
-_KINK, _STRAIGHT = 8.0, 1e-9
-"""Second difference of a curve at a kink, over the median one; and share of the largest below which it is straight."""
 _WIDER = 0.25
 """Distance in the logarithm of pressure by which that table reaches beyond the planned ascent at both ends."""
 _FARTHEST, _OFFSETS = 0.16, 41
@@ -39,19 +39,15 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         return 0
     substance: Substance = arrays.substance
     scale, binding = setup.scale, float(substance.binding_energy)
-    lift = next((each for each in setup.instruments if type(each) is MoistLift), None)
-    none = np.zeros(0)
-    moment, planned, log_pressure, adiabat = none, none, none, np.zeros((0, 0))
-    level, around = none, none
+    lift, none = instrument_of(setup, MoistLift), np.zeros(0)
+    way: dict[str, Any] = dict.fromkeys(("moment", "planned", "log_pressure", "level", "around"), none)
+    way["adiabat"] = np.zeros((0, 0))
     if lift is not None:
         rains = arrays.book.moisture.reservoir.rain > 0.0
-        moment, planned, log_pressure, adiabat = (
-            _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
-        )
-        level, around = _environment(prepared, setup, lift)
-    width, empty, merged = _leaving(setup)
+        way = _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
+        way |= _environment(prepared, setup, lift)
+    leaving = _leaving(setup)
     return Hygrometer(
-        sums=np.zeros(len(Sampled)),
         before=np.zeros(2),
         met=np.zeros(4),
         contact=np.array(_CONTACT_SERIES.coef),
@@ -60,18 +56,11 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         power=float(substance.vapour_heat_capacity - substance.heat_capacity),
         binding=binding,
         critical=_CRITICAL / scale.temperature,
-        moment=moment,
-        planned=planned,
-        log_pressure=log_pressure,
-        adiabat=adiabat,
-        level=level,
-        around=around,
         mass=float(substance.mass),
-        width=width,
-        mean=np.full(width.size, math.nan),
-        error=np.full(width.size, math.nan),
-        empty=empty,
-        merged=merged,
+        mean=np.full(leaving["width"].size, math.nan),
+        error=np.full(leaving["width"].size, math.nan),
+        **way,
+        **leaving,
     )
 
 
@@ -82,40 +71,16 @@ def _levels(setup: Setup, lift: MoistLift) -> Any:
     return np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
 
 
-def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
-    """Return levels that are `times` closer together at the kinks of a curve, which linear interpolation would cut off.
-
-    The curve of a parcel has a kink where the cloud begins, the curve of a sounding at each of its levels.
-
-    Examples
-    --------
-    >>> levels = np.linspace(0.0, 1.0, 11)
-    >>> finer = finer_at_kinks(levels, np.where(levels < 0.45, levels**2, 2.0 * levels))
-    >>> finer.size, [round(float(each), 3) for each in finer[:4]]
-    (200, [0.0, 0.1, 0.2, 0.3])
-    """
-    bent = np.abs(np.diff(curve, 2))
-    usual = np.median(bent[bent > _STRAIGHT * bent.max()])
-    is_near = np.zeros(levels.size - 1, np.bool_)
-    for k in np.flatnonzero(bent > _KINK * usual):
-        is_near[k : k + 2] = True
-    pieces = [
-        np.linspace(low, high, times + 1)[:-1] if near else [low]
-        for low, high, near in zip(levels[:-1], levels[1:], is_near, strict=True)
-    ]
-    return np.concatenate([*pieces, levels[-1:]])
-
-
-def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
+def _adiabat(setup: Setup, lift: MoistLift) -> dict[str, Any]:
     """Return the adiabat of a parcel that keeps its water, as a function of pressure alone: see `Hygrometer`."""
     levels = _levels(setup, lift)
     levels = finer_at_kinks(levels, lift.curve(np.exp(levels)))
-    kelvin = lift.curve(np.exp(levels))
-    unit = np.array([math.log(setup.scale.pressure)])
-    return np.zeros(1), unit * 0.0, levels[::-1] - unit, kelvin[None, ::-1] / setup.scale.temperature
+    kelvin, falling = lift.curve(np.exp(levels)), levels[::-1] - math.log(setup.scale.pressure)
+    adiabat = kelvin[None, ::-1] / setup.scale.temperature
+    return {"moment": np.zeros(1), "planned": np.zeros(1), "log_pressure": falling, "adiabat": adiabat}
 
 
-def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
+def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> dict[str, Any]:
     """Return the adiabat of a parcel whose water rains out, by moment and by pressure over planned pressure.
 
     The remaining water depends on the ascent, and is taken as planned; at another pressure the parcel has the same
@@ -136,46 +101,33 @@ def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tup
         law.parcel_path(p * np.exp(offsets), p, t, w, nuclei_heat=heat).temperature
         for p, t, w in zip(pressure, kelvin, water, strict=True)
     ]
-    planned = np.log(pressure / setup.scale.pressure)
-    return shares[middle] * setup.duration, planned, offsets, np.array(rows) / setup.scale.temperature
+    return {
+        "moment": shares[middle] * setup.duration,
+        "planned": np.log(pressure / setup.scale.pressure),
+        "log_pressure": offsets,
+        "adiabat": np.array(rows) / setup.scale.temperature,
+    }
 
 
-def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any]:
+def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> dict[str, Any]:
     """Return the virtual temperature of the environment as a function of its pressure; empty if theory lacks it."""
     levels, name = _levels(setup, lift), "environment_virtual_temperature"
     if name not in theory_at(prepared, np.exp(levels[:2])):  # two levels only, for theory is slow if it rains
-        return np.zeros(0), np.zeros(0)
+        return {"level": np.zeros(0), "around": np.zeros(0)}
     levels = finer_at_kinks(levels, theory_at(prepared, np.exp(levels))[name], 4)  # many kinks, and none is sharp
-    around = theory_at(prepared, np.exp(levels))[name]
-    return levels[::-1] - math.log(setup.scale.pressure), around[::-1] / setup.scale.temperature
+    around = theory_at(prepared, np.exp(levels))[name][::-1] / setup.scale.temperature
+    return {"level": levels[::-1] - math.log(setup.scale.pressure), "around": around}
 
 
-def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict[str, Any]:
-    """Return the curves of theory for a parcel and its environment at these pressures [Pa].
-
-    Theory gets arbitrary values of the parcel's temperature and water, so curves that depend on these mean nothing.
-    """
-    import xarray as xr  # loads slowly
-
-    ones = np.ones(pressure.size)
-    series = {"parcel_pressure": pressure, "environment_pressure": pressure, "parcel_temperature": 280.0 * ones}
-    series |= {"humidity_mixing_ratio": 0.0 * ones, "cloud_liquid_water_mixing_ratio": 0.0 * ones}
-    series |= {"rain_mixing_ratio": 0.0 * ones} if rains else {}
-    asked = xr.Dataset({name: ("elapsed_time", values) for name, values in series.items()})
-    told = prepared.module.theory(asked, prepared.settings)
-    return {name: values for name, values in told.items() if np.shape(values) == pressure.shape}
-
-
-def _leaving(setup: Setup) -> tuple[Any, int, int]:
-    """Return the bin widths of the energy of molecules that leave, the number of empty bins, and `_merged`."""
-    leaving = next((each for each in setup.instruments if type(each) is Leaving), None)
+def _leaving(setup: Setup) -> dict[str, Any]:
+    """Return the widths of the bins of energy of molecules that leave, which of them are empty, and `_merged`."""
+    leaving: Leaving | None = instrument_of(setup, Leaving)
     if leaving is None:
-        return np.zeros(0), 0, 1
-    bounds = bins_of(setup, leaving)
-    merged = leaving.merged
-    parcel: Any = setup.parcel
-    edges, _ = parcel.emitted_energy
-    return np.diff(bounds)[:, 0] / setup.scale.energy, len(bounds) - (edges.size - 1) // merged, merged
+        return {"width": np.zeros(0), "empty": 0, "merged": 1}
+    bounds, parcel = bins_of(setup, leaving), setup.parcel
+    edges, _ = parcel.emitted_energy  # type: ignore[attr-defined]
+    empty = len(bounds) - (edges.size - 1) // leaving.merged
+    return {"width": np.diff(bounds)[:, 0] / setup.scale.energy, "empty": empty, "merged": leaving.merged}
 
 
 def bins_of(setup: Setup, leaving: Leaving) -> Any:

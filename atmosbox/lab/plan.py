@@ -3,46 +3,50 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from atmosbox.file.variables import known
-from atmosbox.lab.box import LabBox, lab_box
+from atmosbox.lab.box import LabBox, lab_box, refuse
 from atmosbox.lab.drawing import drawing
-from atmosbox.lab.kernels.gauging import Reading
-from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.kernels.knobs import can_set_gravity
+from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.memory_image import BASE, Image, arguments, image
-from atmosbox.lab.moist_plan import (
-    DROP_STATE,
-    WET_STATE,
-    fixed_axes,
-    leaving_energies,
-    planned_alone,
-    water_readings,
-)
-from atmosbox.lab.stage import COLDER, lab_stage, plain, running_panels
+from atmosbox.lab.moist_box import bins_of
+from atmosbox.lab.stage import COLDER, instrument_of, lab_stage, plain, running_panels
 from atmosbox.lab.theory_table import short_run, show_plan, tables
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.lab.well_box import drop_readings, has_bath
+from atmosbox.lab.well_box import has_bath
 from atmosbox.page import ROUND
 from atmosbox.page.controls import gauges, knob_controls
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared
 from atmosbox.scene.conversion import declared_unit
-from atmosbox.scene.instruments import MOMENTS, Lift, Nuclei
-from atmosbox.simulation.preparation import Prepared, link_start
-from atmosbox.theory.constants import BOLTZMANN
+from atmosbox.scene.instruments import MOMENTS, Air, Leaving, MoistLift, Nuclei
+from atmosbox.simulation.preparation import Prepared, build, link_start
+from atmosbox.theory import WATER_MASS_RATIO
+from atmosbox.theory.constants import BOLTZMANN, STANDARD_GRAVITY
 
 if TYPE_CHECKING:
-    from atmosbox.page import Stage
     from atmosbox.scene.panels import Panel
     from atmosbox.scene.setup import Setup
 
 STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
 """The arrays that are equal, to the last bit, if two boxes are in the same state."""
+WET_STATE = tuple(
+    f"book.moisture.reservoir.{name}" for name in ("energy", "count", "clock", "bound", "absent", "top", "spectrum")
+)
+"""The arrays that are equal, to the last bit, if the liquid of two boxes is in the same state."""
+DROP_STATE = (
+    "gas.kinds.table",
+    *(f"book.moisture.drops.{name}" for name in ("held", "cube", "core", "alive", "solute")),
+)
+"""The arrays that are equal if the drops of two boxes are in the same state."""
 
+_SHOWN = re.compile(r"picture\.|gauges\.reading|.*\.(mean|error|adiabat|wind)")
+"""The names of the arrays that the page reads, besides those of the state."""
 _CROSSINGS, _SLOWLY = 4.0, 1.6
 """Times that a molecule crosses the box in a second at the usual pace, and the same where drops soon vanish."""
 _WHOLE = 60.0
@@ -51,6 +55,8 @@ _SOON = 30.0
 """The same for air that turns over, so that rolls are soon seen, and the time that an ascent takes [s]."""
 _TIME = "elapsed_time"
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_UNDECLARED = {"temperature_of_those_that_left": "K", "moment": "1"}
+"""Units of readings by which the page looks up theory, and which are in no file."""
 _SLOWEST = 0.15
 """Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
 _FIGURES = 4
@@ -75,34 +81,21 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> plan, memory, _ = lab_plan(prepare("temperature", {"molecules": 20}))
-    >>> plan["molecules"], plan["size"] == memory.size, sorted(plan["knobs"])
-    (20, True, ['temperature'])
+    >>> plan["frames"], plan["size"] == memory.size, sorted(plan["knobs"])
+    (1000, True, ['temperature'])
     """
-    panels, seen = running_panels(prepared), []
-
-    def look(setup: Setup) -> Stage:
-        seen.append(lab_stage(prepared, setup, panels))
-        return seen[-1][0]
-
-    box = lab_box(prepared, look)
-    setup, (stage, fast) = box.setup, seen[0]
-    named = {"gas": box.gas, "gauges": box.gauges, "picture": box.picture, "speeds": box.speeds, "layers": box.layers}
-    named["book"] = box.book
-    memory = image(arguments(box), named)
+    panels, setup = running_panels(prepared), build(prepared)
+    refuse(prepared, setup)
+    stage, fast = lab_stage(prepared, setup, panels)
+    box = lab_box(prepared, setup, stage)
+    memory = image(arguments(box))
     state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
-    wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
-    wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "picture.place", "picture.colour", "picture.length"}
-    wanted |= {"picture.state", "picture.drops", "picture.many"}
-    wanted |= {"gauges.flow.adiabat", "gauges.flow.wind"} if _has_wind(box) else set()
-    wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)
     begun = short_run(prepared)
-    readings = _readings(box)
+    readings = _readings(box, set(prepared.module.theory(begun, prepared.settings)) if box.attracts else set())
     if not np.isfinite(begun.air_pressure.values).any():  # no wall on which pressure is measured
         readings = [each for each in readings if each[0] != "air_pressure"]
     profiles = _profiles(box)
-    if box.attracts:
-        readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
     curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
     unit = setup.scale.time / _SECONDS[setup.time_unit]
     show_plan(stage.record["panels"], curves, unit)
@@ -119,10 +112,9 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "pieces": [[place, len(content)] for place, content in memory.pieces],
         "blocks": memory.blocks,
         "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
-        "arrays": {name: memory.arrays[name] for name in sorted(wanted)},
+        "arrays": {name: array for name, array in memory.arrays.items() if name in state or _SHOWN.match(name)},
         "state": state,
-        "molecules": setup.parcel.number,
-        "present": int(WaterReading.MOLECULES) if box.modes.phases else None,
+        "present": Reading["MOLECULES_IN_GAS"].value,
         "frame": setup.frame,
         "frames": setup.frames,
         "samples": setup.samples,
@@ -137,15 +129,15 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "scale": None
         if box.attracts
         else {"swift": fast, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
-        "ledger": Reading.LEDGER.value,
+        "ledger": Reading["LEDGER_RESIDUAL"].value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
-        "gauges": [] if box.gauges.half.size else gauges(prepared.settings, [name for name, _, _ in readings]),
+        "gauges": [] if box.gauges.running.size else gauges(prepared.settings, [name for name, _, _ in readings]),
         "profiles": profiles,
         "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),
         "tables": curves,
-        "planned": [_AT_REST] if _has_wind(box) else planned_alone(box),
+        "planned": [_AT_REST] if _has_wind(box) else _planned_alone(box),
         "knobs": numbers,
         "units": {},
         "command": _command(prepared),
@@ -173,7 +165,7 @@ def _rate(setup: Setup, least: float) -> float:
     speed = math.sqrt(8.0 / math.pi * float(np.nanmax([kT, *parcel.wall_kT()])) / float(np.mean(parcel.mass)))
     sides = parcel.length[[0, 2]] if parcel.planar else parcel.length
     side = float(np.exp(np.log(sides).mean()))
-    crossings = _SLOWLY if any(type(each) is Nuclei for each in setup.instruments) else _CROSSINGS
+    crossings = _SLOWLY if instrument_of(setup, Nuclei) else _CROSSINGS
     return min(whole, crossings * side / speed) if speed > 0.0 else whole
 
 
@@ -205,47 +197,62 @@ def _seen(row: list[float | None]) -> list[float | None]:
     return [None if value is None else float(f"{value:.{_FIGURES}g}") for value in row]
 
 
-def _readings(box: LabBox) -> list[tuple[str, int, float]]:
+def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
     """Return the readings that are shown: name, index, and factor to SI units or to the unit of the page."""
-    setup = box.setup
-    scale = setup.scale
-    found: list[tuple[str, int, float]] = [
-        ("elapsed_time", Reading.TIME, scale.time / _SECONDS[setup.time_unit]),
-        ("air_temperature", Reading.KT, scale.temperature),
-        ("air_pressure", Reading.PRESSURE, scale.pressure),
-        ("collision_count", Reading.CONTACTS, 1.0),
-    ]
-    if box.gauges.half.size:
-        found += [
-            ("running_energy_light", Reading.LIGHT, scale.energy),
-            ("running_energy_heavy", Reading.HEAVY, scale.energy),
-            ("energy_change", Reading.ENERGY_CHANGE, 1.0),
-            ("momentum_residual", Reading.MOMENTUM, 1.0),
-        ]
-    if box.gauges.mixture.right.size:
-        found += [("mixing_amplitude", Reading.AMPLITUDE, 1.0), ("mixing_entropy", Reading.ENTROPY, 1.0)]
-    if _has_wind(box):
-        speed = scale.velocity
-        found += [("wind_speed", Reading.WIND, speed), ("roll_speed", Reading.ROLLS, speed)]
-        found.append(("tracer_share_aloft", Reading.ALOFT, 1.0))
-    found += water_readings(box) if box.modes.phases else []
-    if any(type(each) is Lift for each in setup.instruments):
-        found += [
-            ("parcel_temperature", Reading.PARCEL_KT, scale.temperature),
-            ("parcel_pressure", Reading.PARCEL_PRESSURE, scale.pressure),
-            ("moment", Reading.MOMENT, 1.0),
-        ]
+    setup, parcel = box.setup, box.setup.parcel
+    kinds = [Air, *(type(each) for each in setup.instruments)]
+    names = [name for kind, measured in MEASURED.items() if kind in kinds for name in measured]
+    absent = _absent_readings(box) if box.modes.phases else set()
+    absent |= {name for name in names if name.endswith("_theory")} - theory
+    found = [(name, Reading[name.upper()].value, _factor(name, box)) for name in names if name not in absent]
     if any(knob.name == "gravity" for knob in setup.knobs):
-        found.append(("gravity", Reading.GRAVITY, scale.acceleration))
-    warm = np.isfinite(setup.parcel.wall_kT())
+        found.append(("gravity", Reading["GRAVITY"].value, _factor("gravity", box)))
+    warm = np.isfinite(parcel.wall_kT())
     if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
         warm[slice(*box.warmed)] = True
-    found += [
-        (f"wall_temperature[{name}]", Reading.WALL_KT + wall, scale.temperature)
-        for wall, name in enumerate(_WALLS)
-        if warm[wall]
-    ]
-    return [(name, int(place), float(factor)) for name, place, factor in found]
+    first, factor = Reading["WALL_TEMPERATURE"].value, _factor("wall_temperature", box)
+    walls = [(f"wall_temperature[{name}]", first + wall, factor) for wall, name in enumerate(_WALLS) if warm[wall]]
+    return found + walls
+
+
+def _absent_readings(box: LabBox) -> set[str]:
+    """Return the variables of the water that its instruments measure in other scenes, but not in this one."""
+    moisture, water = box.book.moisture, box.gauges.water
+    absent = set() if moisture.reservoir.rain > 0.0 else {"rain_mixing_ratio"}
+    absent |= set() if water.level.size else {"parcel_buoyancy"}  # type: ignore[union-attr]
+    if box.modes.drops:
+        salted = moisture.drops.solute > 0.0
+        absent |= set() if salted.any() else {"salted_drop_radius"}
+        absent |= {"pure_drop_radius"} if salted.all() else set()
+    return absent
+
+
+def _planned_alone(box: LabBox) -> list[str]:
+    """Return the curves of theory that hold only on the planned ascent: if it rains, those that depend on the loss."""
+    if instrument_of(box.setup, MoistLift) is None or not box.book.moisture.reservoir.rain > 0.0:
+        return []
+    mixing = [f"{name}_mixing_ratio_theory" for name in ("humidity", "cloud_liquid_water", "rain")]
+    return ["adiabat_temperature", *mixing]
+
+
+def _factor(name: str, box: LabBox) -> float:
+    """Return the factor of a variable from the engine's units to SI units, or to the unit of the page."""
+    scale = box.setup.scale
+    if name == _TIME:
+        return scale.time / _SECONDS[box.setup.time_unit]
+    if name.startswith("running_energy"):  # of a single disc
+        return scale.energy
+    if name == "parcel_buoyancy":
+        return STANDARD_GRAVITY
+    if name.endswith("drop_radius"):
+        return scale.length / float(instrument_of(box.setup, Nuclei).width)
+    variable = known(name)
+    units = {
+        "K": scale.temperature, "Pa": scale.pressure, "m s-1": scale.velocity, "s m-1": 1.0 / scale.velocity,
+        "m s-2": scale.acceleration, "m-3": scale.number_density, "J": scale.total_energy, "J-1": 1.0 / scale.energy,
+        "s-1": scale.weight / scale.time, "kg kg-1": WATER_MASS_RATIO, "1": 1.0,
+    }  # fmt: skip
+    return units[_UNDECLARED[name] if variable is None else variable.units]
 
 
 def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
@@ -268,32 +275,26 @@ def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dic
 
 def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
-    scale = box.setup.scale
-    bins, layers = box.gauges.counts.size, box.gauges.sums.shape[1]
-    found = [("speed_probability_density", "speeds", 0, bins, 1.0 / scale.velocity)] if bins else []
-    if layers:
-        found += [
-            ("number_density", "layers", 0, layers, scale.number_density),
-            ("layer_temperature", "layers", layers, layers, scale.temperature),
-            ("layer_pressure", "layers", 2 * layers, layers, scale.pressure),
-        ]
-    if _has_wind(box):
-        found.append(("layer_wind", "layers", 3 * layers, layers, scale.velocity))
-    across = box.gauges.mixture.counts.shape[1]
-    if across:
-        found += [
-            (f"left_gas_share_{name}", "gauges.mixture", place * across, across, 1.0)
-            for place, name in enumerate(MOMENTS)
-        ]
-    found += leaving_energies(box) if box.modes.phases else []
-    told = [
-        (name + end, f"{array}.{part}", first, count, float(factor))
-        for name, array, first, count, factor in found
+    gauges, layers = box.gauges, box.gauges.virial.size
+    water: Any = gauges.water
+    rows = [("speed_probability_density", "speeds", 0, gauges.speeds.size)]
+    rows += [
+        (name, "layers", place * layers, layers)
+        for place, name in enumerate(("number_density", "layer_temperature", "layer_pressure", "layer_wind"))
+        if _has_wind(box) or name != "layer_wind"
+    ]
+    across = gauges.sides.columns if gauges.mixture.moments.size else 0
+    rows += [(f"left_gas_share_{name}", "gauges.mixture", place * across, across) for place, name in enumerate(MOMENTS)]
+    rows += [("leaving_energy_probability_density", "gauges.water", 0, water.width.size)] if water else []
+    found = [
+        (name + end, f"{array}.{part}", first, count, _factor(name, box))
+        for name, array, first, count in rows
         for end, part in (("", "mean"), ("_se", "error"))
+        if count
     ]
     if _has_wind(box):
-        told.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, float(scale.temperature)))
-    return told
+        found.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, box.setup.scale.temperature))
+    return found
 
 
 def _wind(box: LabBox) -> dict[str, Any]:
@@ -311,18 +312,19 @@ def _has_wind(box: LabBox) -> bool:
 
 
 def _fixed(box: LabBox) -> dict[str, Any]:
-    """Return the coordinates that do not change: the middles of bins of speed, layers and bins of distance, in SI."""
-    edges, layers = box.gauges.edges * box.setup.scale.velocity, box.gauges.sums.shape[1]
+    """Return the coordinates that do not change, in SI: the middles of bins, and radii at which theory is drawn."""
+    edges, layers = box.gauges.fast.edges * box.setup.scale.velocity, box.gauges.virial.size
     found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
     if layers:
         height = np.linspace(0.0, float(box.setup.parcel.length[2]), layers + 1) * box.setup.scale.length
         found["height"] = plain(0.5 * (height[1:] + height[:-1]))
-    mixture = box.gauges.mixture
-    across = mixture.counts.shape[1]
-    if across:
-        edges = np.linspace(0.0, mixture.width, across + 1) * box.setup.scale.length
+    sides = box.gauges.sides
+    if sides.columns > 1:
+        edges = np.linspace(0.0, sides.width, sides.columns + 1) * box.setup.scale.length
         found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
-    return found | (fixed_axes(box) if box.modes.phases else {})
+    leaving, nuclei = (instrument_of(box.setup, kind) for kind in (Leaving, Nuclei))
+    found |= {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
+    return found if nuclei is None else found | {"radius": plain(nuclei.radius)}
 
 
 def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
@@ -335,24 +337,22 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     for knob in kept:
         unit = declared_unit(knob.unit)
         told: dict[str, Any] = {"up": unit.up, "down": unit.down, "offset": unit.offset, "times": 1.0, "over": 1.0}
-        is_wet = hasattr(setup.parcel, "vapour")
         if knob.name.endswith("temperature"):
-            kernel, argument = ("warm_bath", "1") if box.attracts and has_bath(setup) else ("warm_walls", "3")
-            told |= {"kernel": kernel, "argument": argument, "times": BOLTZMANN, "over": setup.scale.energy}
-            if is_wet:
-                told["argument"] = "4"
-                told |= {} if knob.leave is None else {"leave": "smooth_walls", "rounds": True}
+            told |= {"kernel": "warm_bath" if box.attracts and has_bath(setup) else "warm_walls", "argument": "kT"}
+            told |= {"times": BOLTZMANN, "over": setup.scale.energy}
+            if knob.leave is not None and box.modes.phases:
+                told |= {"leave": "smooth_walls", "rounds": True}
             if knob.wall is not None:
-                told["walls"] = {"1": knob.wall, "2": knob.wall + 1}
+                told["walls"] = {"first": knob.wall, "last": knob.wall + 1}
         elif knob.name == "gravity":
-            told |= {"kernel": "set_gravity", "argument": "4", "over": setup.scale.acceleration, "rounds": True}
-            told["everywhere"] = "0.box.gravity"
+            told |= {"kernel": "set_gravity", "argument": "gravity", "over": setup.scale.acceleration, "rounds": True}
+            told["everywhere"] = "gas.box.gravity"
         elif knob.name == "attraction":
-            told |= {"kernel": "attract", "argument": "3"}
+            told |= {"kernel": "attract", "argument": "strength"}
         elif knob.name == "open_pool":
-            told |= {"kernel": "cover_pool", "argument": "2"}
+            told |= {"kernel": "cover_pool", "argument": "share"}
         else:  # a part of the way, or a height; both are converted to a moment of the ascent
-            told |= {"kernel": "lead", "argument": "3", "end": _end(setup)}
+            told |= {"kernel": "lead", "argument": "towards", "end": _end(setup)}
             if knob.places is not None:
                 heights, shares = knob.places
                 told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}

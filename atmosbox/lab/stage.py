@@ -44,6 +44,11 @@ def plain(values: ArrayLike) -> list[float | None]:
     return [float(f"{x:.7g}") if math.isfinite(x) else None for x in numbers.tolist()]
 
 
+def instrument_of(setup: Setup, kind: type) -> Any:
+    """Return the instrument of a kind that a box has; None if it has none."""
+    return next((each for each in setup.instruments if type(each) is kind), None)
+
+
 def running_panels(prepared: Prepared) -> tuple[Panel, ...]:
     """Return the graphs of a scene without what only a whole run knows; an axis of time is linear.
 

@@ -15,20 +15,7 @@ from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.start.overlap import bins_of, spheres_of
 from atmosbox.lab.kernels.pairwise import DEPTH
-from atmosbox.lab.kernels.starting import (
-    ALONG_X,
-    AS_PLACED,
-    AT_RANDOM,
-    PLACES,
-    SPINS,
-    VELOCITIES,
-    Cleared,
-    Start,
-    can_start,
-)
-
-_DRAWN = {"position": PLACES, "velocity": VELOCITIES, "rotational_energy": SPINS}
-_NUMBERED = {"as placed": AS_PLACED, "at random": AT_RANDOM, "along x": ALONG_X}
+from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start, can_start
 
 
 def is_drawn(parcel: Any) -> bool:
@@ -74,10 +61,11 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
     equal = isinstance(moving, EqualSpeeds)
     kT = np.broadcast_to(0.0 if equal else np.asarray(moving.kT, np.float64), (n,))
     exact = not equal and moving.exact and n > 1 and kT.mean() > 0.0
+    centre = np.array(places.centre, np.float64).reshape(-1, 3)
     has_layers = arrays.modes.gravity and arrays.modes.rows
     return Start(
-        parts=np.array([_DRAWN[part.draws] for part in declared.parts], np.int64),
-        numbered=_NUMBERED[places.numbered],
+        parts=np.array([DRAWN.index(part.draws) for part in declared.parts], np.int64),
+        numbered=NUMBERED.index(places.numbered),
         scale_height=float(places.scale_height or 0.0),
         planar=int(planar),
         speed=float(moving.speed) if equal else 0.0,
@@ -95,9 +83,9 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
         spread=spread,
         at=_first_gauges(parcel),
         layout=layout if has_layers else 0,
-        cleared=_cleared(places, float(sides[0])) if arrays.modes.drops else 0,
+        cleared=Cleared(centre, np.array(places.reach, np.float64), float(sides[0])) if arrays.modes.drops else 0,
         velocity=np.zeros((n, 3)),
-        key=np.zeros(3 * n),
+        key=np.zeros(3 * n + 1),
         rank=np.zeros(n, np.int64),
         other=np.zeros(n, np.int64),
         waiting=np.zeros((DEPTH, 2), np.int64),
@@ -106,16 +94,12 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
     )
 
 
-def first_baths(walls: Any) -> list[float]:
-    """Return the temperatures of the heat baths at the start [energy]."""
-    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
-    return [float(kT) for law, kT in first if law == HEAT_BATH]
-
-
 def _spread(parcel: Any, sides: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the spacing of molecules, and the fastest speed of walls and of a fall over it: see `natural_time`."""
     spacing = float(cbrt(math.prod(sides.tolist()) / max(parcel.number, 1)))
-    fastest = [math.sqrt(kT / float(parcel.mass.mean())) for kT in first_baths(parcel.arrays().gas.walls)]
+    walls = parcel.arrays().gas.walls
+    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    fastest = [math.sqrt(float(kT) / float(parcel.mass.mean())) for law, kT in first if law == HEAT_BATH]
     return np.array([spacing, max([*fastest, math.sqrt(parcel.gravity * spacing)])])
 
 
@@ -135,9 +119,3 @@ def _first_gauges(parcel: Any) -> Any:
         0.0, parcel.number, parcel.degrees_of_freedom, 2.0 if parcel.planar else 3.0, 0.0, 0.0, parcel.open_density,
         open_height,
     )  # fmt: skip
-
-
-def _cleared(places: Scattered, side: float) -> Cleared:
-    """Return the drops that molecules make room for."""
-    centre = np.array(places.centre, np.float64).reshape(-1, 3)
-    return Cleared(centre, np.array(places.reach, np.float64), side)

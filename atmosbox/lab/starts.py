@@ -10,6 +10,7 @@ from __future__ import annotations
 import gzip
 import json
 from collections.abc import Callable, Iterator
+from itertools import product
 from typing import Any, NamedTuple
 
 from atmosbox.errors import AtmosboxError
@@ -209,22 +210,16 @@ def _said(value: float, told: Parameter) -> str:
 def _others(prepared: Prepared, offered: dict[str, list[str]]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield titles and settings of the other starts that a page may offer; only presets have a title."""
     seed: dict[str, Any] = {"seed": prepared.settings.seed}
-    names = [name for name in ("molecules", *_MEETING) if name in offered]
-    near, far = slice(1, 3), slice(3, None)
-    for name in names[:1]:
-        yield from (("", {**seed, name: value}) for value in offered[name][near])
+    numbers, meeting = (
+        [{name: value} for name in names if name in offered for value in offered[name][1:]]
+        for names in (("molecules",), _MEETING)
+    )
+    yield from (("", seed | each) for each in numbers[:2])
     for preset in lesson_of(prepared.module).presets:
         yield preset.title, {**seed, **preset.values}
-    for name in names[1:]:
-        yield from (("", {**seed, name: value}) for value in offered[name][near])
-    yield from (("", {"seed": value}) for value in offered.get("seed", [])[1:])
-    for name in names[:1]:
-        yield from (("", {**seed, name: value}) for value in offered[name][far])
-    if len(names) == 2:
-        one, two = names
-        yield from (("", {**seed, one: a, two: b}) for a in offered[one][near] for b in offered[two][near])
-    for name in names[1:]:
-        yield from (("", {**seed, name: value}) for value in offered[name][far])
+    both = [one | two for one, two in product(numbers[:2], meeting[:2])]
+    seeds = [{"seed": value} for value in offered.get("seed", [])[1:]]
+    yield from (("", seed | each) for each in (*meeting[:2], *seeds, *numbers[2:], *both, *meeting[2:]))
 
 
 def _offer(prepared: Prepared, made: list[Start], presets: list[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +12,10 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError, Setting, SettingError
-from atmosbox.lab.moist_plan import moist_tables
-from atmosbox.lab.stage import plain
+from atmosbox.lab.stage import instrument_of, plain
 from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.scene.conversion import to_si
-from atmosbox.scene.instruments import Lift
+from atmosbox.scene.instruments import Leaving, Lift, MoistLift
 from atmosbox.simulation.preparation import Prepared, build
 from atmosbox.simulation.recording import Recording
 
@@ -32,6 +32,16 @@ _LONG = 20.0
 """Theory is tabulated for this many times the length of a run, because the page goes on."""
 _WAY = 401
 """Number of values in a table along the ascent of a parcel."""
+_WARMEST, _COLDEST, _WARMTHS = 350.0, 240.0, 45
+_WIDER = 1.25
+_KINK, _STRAIGHT = 8.0, 1e-9
+"""Second difference of a curve at a kink, over the median one; and share of the largest below which it is straight."""
+_PLACES = 60
+_TIME = "elapsed_time"
+_KNOWN = ("environment", "reference")
+"""Roles of the curves that are drawn from the start: the air around the parcel, and what it is compared with."""
+
+Array = NDArray[np.float64]
 
 
 def short_run(prepared: Prepared) -> xr.Dataset:
@@ -97,17 +107,20 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     >>> warmth["along"], warmth["curves"]["air_temperature_theory"] == warmth["grid"]
     ('wall_temperature[z_low]', True)
     """
-    if hasattr(setup.parcel, "vapour") and not hasattr(setup.parcel, "drops"):
-        return moist_tables(prepared, setup, found)
-    lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
+    lift, moist_lift = (instrument_of(setup, kind) for kind in (Lift, MoistLift))
+    if moist_lift is not None:
+        return _moist_way(prepared, setup, moist_lift, found)
     if lift is not None:
-        return [_way(setup, lift), _adiabat(setup, lift)]
+        return [_way(setup, lift, np.linspace(0.0, setup.duration, _WAY)), _adiabat(setup, lift)]
     knobs = {knob.name: knob for knob in setup.knobs}
-    if "temperature" not in knobs:
+    if "temperature" not in knobs or hasattr(setup.parcel, "drops"):
         return _course(prepared, setup, found)
     if "gravity" in knobs:
         return [_column(prepared, found, knobs["temperature"], knobs["gravity"])]
-    return [_walls(prepared, found, knobs["temperature"])]
+    if not hasattr(setup.parcel, "vapour"):
+        return [_walls(prepared, found, knobs["temperature"])]
+    table = _moist_walls(prepared, found, knobs["temperature"])
+    return [table] if instrument_of(setup, Leaving) is None else [table, _energies(prepared, found)]
 
 
 def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
@@ -128,13 +141,35 @@ def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[st
 
 def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
     """Return the curves of theory as functions of the temperature of the walls."""
-    grid = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS).tolist()
     curves: dict[str, list[Any]] = {}
-    for kelvin in grid:
+    grid = _range(knob)
+    for kelvin in grid.tolist():
         here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
         for name, values in prepared.module.theory(here, prepared.settings).items():
             curves.setdefault(name, []).append(_last(values, found))
     return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
+
+
+def _moist_walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
+    """Return the same of a box with water, without profiles; its walls may also have no temperature."""
+    kelvin = np.append(_range(knob), [] if knob.leave is None else [math.nan])
+    here = found.isel(elapsed_time=np.zeros(kelvin.size, int))
+    walls = np.repeat(kelvin[:, None], here.sizes["wall"], axis=1)
+    here = here.assign(wall_temperature=(("elapsed_time", "wall"), walls))
+    told = dict(prepared.module.theory(here, prepared.settings))
+    told.pop("liquid_saturation_vapor_pressure", None)  # belongs to the pool, whose temperature is measured
+    series = {name: plain(values) for name, values in told.items() if _is_series(values, here)}
+    curves = {name: values[:_POINTS] for name, values in series.items()}
+    table = {"along": "wall_temperature[x_low]", "grid": plain(kelvin[:_POINTS]), "curves": curves}
+    if knob.leave is not None:
+        table["otherwise"] = {name: values[-1] for name, values in series.items()}
+        table["times"] = {"condensation_rate_theory": "pool_open_share"}
+    return table
+
+
+def _range(knob: Knob) -> Array:
+    """Return the values of a knob at which theory is tabulated [K]."""
+    return np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS)
 
 
 def _column(prepared: Prepared, found: xr.Dataset, knob: Knob, pull: Knob) -> dict[str, Any]:
@@ -176,9 +211,8 @@ def _is_series(values: Any, found: xr.Dataset) -> bool:
     return bool(np.shape(values) == (found.sizes["elapsed_time"],))
 
 
-def _way(setup: Setup, lift: Lift) -> dict[str, Any]:
-    """Return height, pressure and temperature of the environment at each moment of the planned ascent."""
-    moments = np.linspace(0.0, setup.duration, _WAY)
+def _way(setup: Setup, lift: Lift | MoistLift, moments: Array) -> dict[str, Any]:
+    """Return height, pressure and temperature of the environment at moments of the planned ascent."""
     around, seconds = lift.environment, (moments * setup.scale.time).tolist()
     curves = {
         "parcel_height": plain([around.height(t) for t in seconds]),
@@ -197,12 +231,92 @@ def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
     return {"along": "parcel_pressure", "grid": pressures, "curves": {"adiabat_temperature": curve}}
 
 
-_PLACES = 60
-_TIME = "elapsed_time"
-_KNOWN = ("environment", "reference")
-"""Roles of the curves that are drawn from the start: the air around the parcel, and what it is compared with."""
+def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
+    """Return the energy distributions of molecules that leave and that stay, by the temperature of the liquid."""
+    grid = np.linspace(_COLDEST, _WARMEST, _WARMTHS)
+    curves: dict[str, list[Any]] = {}
+    ones = np.ones(found.sizes["elapsed_time"])
+    for kelvin in grid:
+        here = found.assign(liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones))
+        for name, values in prepared.module.theory(here, prepared.settings).items():
+            if np.shape(values) == found.energy.shape:
+                curves.setdefault(name, []).append(plain(values))
+    return {"along": "temperature_of_those_that_left", "grid": plain(grid), "curves": curves}
 
-Array = NDArray[np.float64]
+
+def _moist_way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the environment along the ascent, and the curves of theory by the pressure of the parcel."""
+    frames = (np.arange(setup.frames) + 0.5) * setup.frame
+    moments = np.union1d(np.linspace(0.0, setup.duration, _WAY), frames)
+    outside, middle = (
+        np.array([lift.environment.pressure(t) for t in (each * setup.scale.time).tolist()])
+        for each in (moments, frames)
+    )
+    way = _way(setup, lift, moments)
+    spread = {
+        "along": "moment",
+        "grid": plain(frames),
+        "curves": {"parcel_temperature_se": plain(lift.scatter(middle))},
+        "times": {"parcel_temperature_se": "parcel_temperature"},
+    }
+    rains = "rain_mixing_ratio" in found
+    # if it rains, theory is slow, and the only curve by pressure alone is straight
+    levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, _WAY // 2 if rains else 2 * _WAY - 1)
+    if not rains:
+        levels = finer_at_kinks(levels, theory_at(prepared, levels)["cloud_liquid_water_mixing_ratio_theory"])
+    by_pressure = theory_at(prepared, levels)
+    if any(name.startswith("environment_") for name in by_pressure):
+        told = theory_at(prepared, outside)
+        way["curves"] |= {name: plain(values) for name, values in told.items() if name.startswith("environment_")}
+    known = [name for name in by_pressure if not name.startswith(("environment_", "parcel_", "relative_humidity"))]
+    tables = [way, spread]
+    if rains:  # the water that has rained out, and that which is left, depend on the ascent
+        planned = theory_at(prepared, middle, rains=True)
+        along = {name: plain(values) for name, values in planned.items() if "mixing_ratio" in name}
+        tables.append({"along": "moment", "grid": plain(frames), "curves": along})
+        known = ["dry_air_adiabat_temperature"]
+    falling = {name: plain(by_pressure[name][::-1]) for name in known}
+    return [*tables, {"along": "parcel_pressure", "grid": plain(levels[::-1]), "curves": falling}]
+
+
+def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict[str, Any]:
+    """Return the curves of theory for a parcel and its environment at these pressures [Pa].
+
+    Theory gets arbitrary values of the parcel's temperature and water, so curves that depend on these mean nothing.
+    """
+    import xarray as xr  # loads slowly
+
+    ones = np.ones(pressure.size)
+    series = {"parcel_pressure": pressure, "environment_pressure": pressure, "parcel_temperature": 280.0 * ones}
+    series |= {"humidity_mixing_ratio": 0.0 * ones, "cloud_liquid_water_mixing_ratio": 0.0 * ones}
+    series |= {"rain_mixing_ratio": 0.0 * ones} if rains else {}
+    asked = xr.Dataset({name: ("elapsed_time", values) for name, values in series.items()})
+    told = prepared.module.theory(asked, prepared.settings)
+    return {name: values for name, values in told.items() if np.shape(values) == pressure.shape}
+
+
+def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
+    """Return levels that are `times` closer together at the kinks of a curve, which linear interpolation would cut off.
+
+    The curve of a parcel has a kink where the cloud begins, the curve of a sounding at each of its levels.
+
+    Examples
+    --------
+    >>> levels = np.linspace(0.0, 1.0, 11)
+    >>> finer = finer_at_kinks(levels, np.where(levels < 0.45, levels**2, 2.0 * levels))
+    >>> finer.size, [round(float(each), 3) for each in finer[:4]]
+    (200, [0.0, 0.1, 0.2, 0.3])
+    """
+    bent = np.abs(np.diff(curve, 2))
+    usual = np.median(bent[bent > _STRAIGHT * bent.max()])
+    is_near = np.zeros(levels.size - 1, np.bool_)
+    for k in np.flatnonzero(bent > _KINK * usual):
+        is_near[k : k + 2] = True
+    pieces = [
+        np.linspace(low, high, times + 1)[:-1] if near else [low]
+        for low, high, near in zip(levels[:-1], levels[1:], is_near, strict=True)
+    ]
+    return np.concatenate([*pieces, levels[-1:]])
 
 
 def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, Any]], unit: float) -> None:

@@ -13,8 +13,8 @@ from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.wells.vicinity import new_vicinity
 from atmosbox.engine.wells.well_events import WellGas
 from atmosbox.lab.kernels.attracting import Lists
-from atmosbox.lab.kernels.clustering import FIRST, Crowd, DropReading
-from atmosbox.lab.kernels.gauging import Reading
+from atmosbox.lab.kernels.clustering import Crowd
+from atmosbox.lab.stage import instrument_of
 from atmosbox.scene.instruments import Clusters
 from atmosbox.scene.instruments.condensate import CROWDED
 from atmosbox.scene.setup import Setup
@@ -49,7 +49,7 @@ def lists(parcel: Any) -> Lists:
 def crowd(setup: Setup) -> Crowd:
     """Return the data of the drops at the start, without any drop."""
     number = setup.parcel.number
-    clusters = next((each for each in setup.instruments if type(each) is Clusters), Clusters(0))
+    clusters = instrument_of(setup, Clusters) or Clusters(0)
     return Crowd(
         members=clusters.molecules,
         crowded=CROWDED,
@@ -76,38 +76,6 @@ def _gas_law() -> NDArray[np.float64]:
     warmth = 1.0 / np.log1p(x)
     told = np.stack([law.square_well_second_virial(warmth), law.square_well_third_virial(warmth)])
     return np.ascontiguousarray(np.linalg.solve(np.vander(x, _POWERS, increasing=True), told.T).T)
-
-
-def drop_readings(setup: Setup, theory: set[str]) -> list[tuple[str, int, float]]:
-    """Return the readings of the drops: name, index, and factor to SI units.
-
-    Parameters
-    ----------
-    setup
-        The box.
-    theory
-        Names of the curves that the scene's theory has.
-    """
-    scale, drop = setup.scale, DropReading
-    found = [("kinetic_energy", int(Reading.KINETIC), scale.total_energy)]
-    rows = (
-        ("largest_drop_molecule_count", drop.LARGEST, 1.0),
-        ("vapor_molecule_count", drop.VAPOUR, 1.0),
-        ("drop_count", drop.DROPS, 1.0),
-        ("attraction_energy", drop.WELL_ENERGY, scale.total_energy),
-        ("molecular_energy", drop.ENERGY, scale.total_energy),
-        ("heat_from_bath", drop.BATH_HEAT, scale.total_energy),
-        ("work_by_attraction", drop.ATTRACTION_WORK, scale.total_energy),
-        ("virial_pressure", drop.PRESSURE, scale.pressure),
-        ("well_count", drop.WELLS, 1.0),
-    )
-    bath = FIRST + drop.BATH_KT if has_bath(setup) else Reading.WALL_KT + 4
-    curves = (
-        ("air_temperature_theory", bath, scale.temperature),
-        ("virial_pressure_theory", FIRST + drop.GAS_PRESSURE, scale.pressure),
-    )
-    found += [(name, FIRST + place, factor) for name, place, factor in rows]
-    return found + [(name, int(place), factor) for name, place, factor in curves if name in theory]
 
 
 def has_bath(setup: Setup) -> bool:

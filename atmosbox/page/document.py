@@ -16,34 +16,11 @@ LANGUAGES = ("auto", "en", "de", "es")
 """The languages of a page; ``auto`` takes the first language of the reader's browser that the page has."""
 
 MODULES = (
-    "words.js",
-    "colour.js",
-    "figure.js",
-    "frames.js",
-    "clock.js",
-    "molecules.js",
-    "mist.js",
-    "walls.js",
-    "labels.js",
-    "trace.js",
-    "wind.js",
-    "camera.js",
-    "stage.js",
-    "speeds.js",
-    "atmosphere.js",
-    "curves.js",
-    "skewt.js",
-    "ink.js",
-    "notes.js",
-    "graph.js",
-    "means.js",
-    "graphs.js",
-    "caption.js",
-    "legend.js",
-    "transport.js",
-    "keys.js",
-    "sheet.js",
-)
+    "words.js", "colour.js", "figure.js", "frames.js", "clock.js", "molecules.js", "mist.js", "walls.js",
+    "labels.js", "trace.js", "wind.js", "camera.js", "stage.js", "speeds.js", "atmosphere.js", "curves.js",
+    "skewt.js", "ink.js", "notes.js", "graph.js", "means.js", "graphs.js", "caption.js", "legend.js",
+    "transport.js", "keys.js", "sheet.js",
+)  # fmt: skip
 """Our scripts, each after the scripts that it imports."""
 
 _ENTRIES = {

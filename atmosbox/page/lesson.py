@@ -90,7 +90,7 @@ def lesson_of(module: ModuleType) -> Lesson:
     presets = [
         Preset(str(each["title"]), dict(each["set"])) for each in _entries(path, told.get("preset", []), "preset")
     ]
-    questions = _entries(path, [told[name] for name in ("predict",) if name in told], "predict")
+    questions, tasks = (_entries(path, [told[name]] if name in told else [], name) for name in ("predict", "task"))
     for each in questions:
         if not 1 <= each["right"] <= len(each["choices"]):
             raise ConfigError(
@@ -100,7 +100,6 @@ def lesson_of(module: ModuleType) -> Lesson:
             if not isinstance(each["draw"], dict) or len(each["draw"]) not in (1, 2):
                 raise ConfigError(f"{path}: draw of predict must have a variable, and at most what it is drawn along.")
             each["draw"] = {name: _quantities(path, name, ends, "a prediction") for name, ends in each["draw"].items()}
-    tasks = _entries(path, [told[name] for name in ("task",) if name in told], "task")
     return Lesson(
         str(told.get("story", "")).strip(),
         next(iter(questions), None),

@@ -19,7 +19,7 @@ from atmosbox.page.document import LANGUAGES, THEMES, view_page
 from atmosbox.page.frame import pack
 from atmosbox.page.panel import Meaning, declared, names
 from atmosbox.page.stage import NEIGHBOURS, Box, Stage, page_box, share, stage
-from atmosbox.page.word import changed, footer_of, notes, settings_of, story_of
+from atmosbox.page.word import changed, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
 
 if TYPE_CHECKING:
@@ -57,6 +57,8 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
 
 
 def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, runs: int) -> Page:
+    from atmosbox.plot.caption import footer
+
     room = share(seen.position.shape[1], len(seen.time), runs)
     kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
     panels, marks, sentences = _graphs(dataset)
@@ -89,7 +91,7 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
     record = {
         "stage": told.record,
         "heading": heading,
-        "footer": footer_of(dataset),
+        "footer": footer(dataset),
         "notes": notes(seen, told.record, frames=len(kept)),
         **_values(dataset, panels, box),
     }
@@ -222,8 +224,6 @@ def save(
     Traceback (most recent call last):
     atmosbox.errors.SettingError: theme = pink is unknown: give auto, light or dark.
     """
-    check_choice("theme", theme, THEMES)
-    check_choice("language", language, LANGUAGES)
     target = check_writable(path, force, example="page.html")
     write_whole(target, page_text(runs, theme=theme, language=language).encode("utf-8"))
     return target
@@ -231,8 +231,6 @@ def save(
 
 def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto", language: str = "auto") -> str:
     """Return the HTML of the page that `save` writes."""
-    from atmosbox.page.saved_run import pages
-
     check_choice("theme", theme, THEMES)
     check_choice("language", language, LANGUAGES)
     told = pages(runs)

@@ -70,13 +70,6 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     return [heading or f"run {number + 1}" for number, heading in enumerate(headings)]
 
 
-def footer_of(dataset: xr.Dataset) -> str:
-    """Return the small type under a page: version, scene, molecules, seed, engine."""
-    from atmosbox.plot.caption import footer
-
-    return footer(dataset)
-
-
 def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str]:
     """Return sentences on what the picture of a run leaves out or adds; ``stage`` is the record of its stage."""
     found = []

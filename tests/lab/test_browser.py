@@ -12,8 +12,7 @@ import pytest
 from atmosbox.file.netcdf import read
 from atmosbox.lab import box as lab_box
 from atmosbox.lab import save_lab
-from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE
-from atmosbox.lab.plan import STATE
+from atmosbox.lab.plan import DROP_STATE, STATE, WET_STATE
 from atmosbox.lab.stage import lab_stage
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import build, prepare

@@ -1,6 +1,7 @@
 """The kernels that a page calls: the engine, how molecules start, instruments, and pictures.
 
 Nothing here is called from Python; ``tools/wasm.py`` compiles it to WebAssembly. Read `kernel_table` first, which
-lists the kernels that a page calls, then `gauging`, `averaging` and `picture`; `attracting` and `clustering` replace
-some of them for molecules that attract each other.
+lists the kernels that a page calls, then `readings`, the variables that it measures, `sums`, what is summed over the
+molecules, `gauging`, `averaging` and `picture`; `attracting` and `clustering` replace some of them for molecules that
+attract each other.
 """

@@ -11,6 +11,7 @@ from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.wells.well_advance import advancing
 from atmosbox.engine.wells.well_events import specialise
+from atmosbox.lab.kernels.readings import ENERGY
 
 
 class Lists(NamedTuple):
@@ -38,41 +39,41 @@ def energy_of_wells(wells):
     return -total
 
 
-@kernel
-def warm_bath(bath, kT):
-    """Set the temperature of the random bath [energy]: see `AttractingParcelSet.set_bath_kT`."""
-    bath.schedule_kT[:] = kT
-    return 0
-
-
 @functools.cache
-def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``pass_time``, ``place`` and ``attract`` of one set of modes."""
+def attracting(modes: Modes) -> dict[str, Callable[..., Any]]:
+    """Return the kernels that replace those of another box, or that only its knobs call, by name."""
     pass_time, settle = advancing(modes)
     _, _, replan, _ = specialise(modes)
 
     @kernel
-    def place(gas, book, lists):
+    def place(gas, book, layout):
         """List the neighbours of all molecules at the start; keep the first time of the bath if it is drawn already."""
         state, clock = gas.tallies.random[0], gas.bath.clock[0]
-        lists.due[0] = PLACE
-        placed = settle(gas, book.now[0], lists)
+        layout.due[0] = PLACE
+        placed = settle(gas, book.now[0], layout)
         if not math.isinf(clock):
             gas.tallies.random[0] = state
             gas.bath.clock[0] = clock
         return Status.DONE.value if placed else Status.FULL.value
 
     @kernel
-    def attract(gas, book, lists, strength):
+    def attract(gas, book, layout, gauges, strength):
         """Change the depth of all wells: see `AttractingParcelSet.set_strength`."""
-        wells = gas.wells
-        before = energy_of_wells(wells)
-        for one in range(wells.depth.shape[0]):
-            for two in range(wells.depth.shape[1]):
-                wells.depth[one, two] = strength * lists.full_depth[one, two]
-        lists.strength[0] = strength
-        lists.work[0] += energy_of_wells(wells) - before
+        depth, work = gas.wells.depth, -energy_of_wells(gas.wells)
+        for one in range(depth.shape[0]):
+            for two in range(depth.shape[1]):
+                depth[one, two] = strength * layout.full_depth[one, two]
+        work += energy_of_wells(gas.wells)
+        layout.work[0] += work
+        gauges.before[ENERGY] += work
+        layout.strength[0] = strength
         replan(gas, book.now[0])
         return 0
 
-    return pass_time, place, attract
+    @kernel
+    def warm_bath(gas, kT):
+        """Set the temperature of the random bath [energy]: see `AttractingParcelSet.set_bath_kT`."""
+        gas.bath.schedule_kT[:] = kT
+        return 0
+
+    return {"pass_time": pass_time, "place": place, "attract": attract, "warm_bath": warm_bath}

@@ -6,7 +6,6 @@ These kernels compute the counts and sums of `atmosbox.scene.instruments.Cluster
 import functools
 import math
 from collections.abc import Callable
-from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,27 +16,9 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.wells.vicinity import is_inside
 from atmosbox.lab.kernels.attracting import energy_of_wells
-from atmosbox.lab.kernels.gauging import Reading, gauging
+from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.picture import picture
-
-FIRST = int(max(Reading)) + 6
-"""Index in ``Gauges.reading`` of the first reading of drops: after the temperatures of the six walls."""
-
-
-class DropReading(IntEnum):
-    """Indices of the readings, counted from `FIRST`; all are in reduced units."""
-
-    LARGEST = 0
-    VAPOUR = 1
-    DROPS = 2
-    WELL_ENERGY = 3
-    ENERGY = 4
-    BATH_HEAT = 5
-    ATTRACTION_WORK = 6
-    PRESSURE = 7
-    WELLS = 8
-    BATH_KT = 9
-    GAS_PRESSURE = 10
+from atmosbox.lab.kernels.readings import TIME, Reading
 
 
 class Crowd(NamedTuple):
@@ -106,16 +87,15 @@ def _find_drops(vicinity, stride, crowd):
 
 
 @functools.cache
-def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``begin``, ``sample``, ``end_frame`` and ``look`` of one set of modes."""
-    begin_air, sample, end_air = gauging(modes)
+def clustering(modes: Modes) -> dict[str, Callable[..., Any]]:
+    """Return the kernels that replace those of another box, by name."""
+    begin_air, _, end_air, _ = gauging(modes, wells=True)
     look_at_speeds = picture(modes)
 
     @kernel
     def begin(gas, ascent, book, gauges, crowd):
         """Begin to measure."""
         begin_air(gas, ascent, book, gauges)
-        gauges.before[7] += energy_of_wells(gas.wells)
         crowd.virial[0] = np.sum(gas.tallies.virial)
         return 0
 
@@ -149,15 +129,15 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return vapour / max(volume - held, 0.1 * volume)
 
     @kernel
-    def end_frame(gas, ascent, book, gauges, lists, crowd):
+    def end_frame(gas, ascent, book, gauges, layout, crowd):
         """Take the readings at the end of a frame, and complete the means of the frame."""
-        lasted = -gauges.before[6]
+        lasted = -gauges.before[TIME]
         end_air(gas, ascent, book, gauges)
-        lasted += gauges.before[6]
-        reading, tallies = gauges.reading, gas.tallies
+        lasted += gauges.before[TIME]
+        reading = gauges.reading
         volume = gas.box.length_x * gas.box.length_z * (1.0 if gas.box.planar else gas.box.length_y)
-        _count_wells(gas.vicinity, lists.stride[0], crowd.wells)
-        _find_drops(gas.vicinity, lists.stride[0], crowd)
+        _count_wells(gas.vicinity, layout.stride[0], crowd.wells)
+        _find_drops(gas.vicinity, layout.stride[0], crowd)
         crowd.size[:] = 0
         largest = vapour = drops = 0
         for i in range(crowd.members):
@@ -167,43 +147,36 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
             crowd.size[crowd.drop[i]] += 1
             drops += crowd.size[crowd.drop[i]] == 1
             largest = max(largest, crowd.size[crowd.drop[i]])
-        virial = np.sum(tallies.virial)
-        bound, kinetic = energy_of_wells(gas.wells), reading[Reading.KINETIC]
-        heat, work = gas.bath.heat[0], lists.work[0]
-        kT = reading[Reading.KT]
-        reading[FIRST + DropReading.LARGEST] = largest
-        reading[FIRST + DropReading.VAPOUR] = vapour
-        reading[FIRST + DropReading.DROPS] = drops
-        reading[FIRST + DropReading.WELL_ENERGY] = bound
-        reading[FIRST + DropReading.ENERGY] = kinetic + bound
-        reading[FIRST + DropReading.BATH_HEAT] = heat
-        reading[FIRST + DropReading.ATTRACTION_WORK] = work
-        motion = gas.molecules.size * kT
-        reading[FIRST + DropReading.PRESSURE] = (motion + (virial - crowd.virial[0]) / (3.0 * lasted)) / volume
-        reading[FIRST + DropReading.WELLS] = np.sum(gas.wells.number)
-        reading[FIRST + DropReading.BATH_KT] = wall_kT(gas.bath, 0, reading[Reading.TIME])
+        virial = np.sum(gas.tallies.virial)
+        bound, kinetic = energy_of_wells(gas.wells), reading[Reading.KINETIC_ENERGY]
+        motion = gas.molecules.size * reading[Reading.AIR_TEMPERATURE]
         density = vapour_density(largest, vapour, drops, volume, crowd)
-        reading[FIRST + DropReading.GAS_PRESSURE] = gas_pressure(density, kT, lists.strength[0], crowd.gas_law)
+        kT = wall_kT(gas.bath, 0, reading[Reading.ELAPSED_TIME])
+        if not gas.bath.rate > 0.0:
+            kT = reading[Reading.WALL_TEMPERATURE + 4]
+        reading[Reading.LARGEST_DROP_MOLECULE_COUNT] = largest
+        reading[Reading.VAPOR_MOLECULE_COUNT] = vapour
+        reading[Reading.DROP_COUNT] = drops
+        reading[Reading.ATTRACTION_ENERGY] = bound
+        reading[Reading.MOLECULAR_ENERGY] = kinetic + bound
+        reading[Reading.HEAT_FROM_BATH] = gas.bath.heat[0]
+        reading[Reading.WORK_BY_ATTRACTION] = layout.work[0]
+        reading[Reading.VIRIAL_PRESSURE] = (motion + (virial - crowd.virial[0]) / (3.0 * lasted)) / volume
+        reading[Reading.WELL_COUNT] = np.sum(gas.wells.number)
+        reading[Reading.AIR_TEMPERATURE_THEORY] = kT
+        kT = reading[Reading.AIR_TEMPERATURE]
+        reading[Reading.VIRIAL_PRESSURE_THEORY] = gas_pressure(density, kT, layout.strength[0], crowd.gas_law)
         crowd.virial[0] = virial
-        # the ledger: see `Account.ledger`
-        given, passed = heat + work, abs(heat) + abs(work)
-        for wall in range(6):
-            given += tallies.heat[wall]
-            passed += abs(tallies.heat[wall])
-        start = gauges.before[7]
-        largest_part = max(abs(kinetic + bound), abs(start), passed, kinetic, abs(bound))
-        off = abs(kinetic + bound - start - given)
-        reading[Reading.LEDGER] = off / largest_part if largest_part > 0.0 else 0.0
         return 0
 
     @kernel
-    def look(gas, book, lists, crowd, picture):
+    def look(gas, book, layout, crowd, picture):
         """Write the positions of all molecules that are shown, and as colour the number of wells each is in."""
         look_at_speeds(gas, book, picture)
-        _count_wells(gas.vicinity, lists.stride[0], crowd.wells)
+        _count_wells(gas.vicinity, layout.stride[0], crowd.wells)
         for k in range(picture.shown.size):
             share = crowd.wells[picture.shown[k]] / picture.highest
             picture.colour[k] = math.floor(min(share, 1.0) * 255 + 0.5)
         return 0
 
-    return begin, sample, end_frame, look
+    return {"begin": begin, "end_frame": end_frame, "look": look}

@@ -8,18 +8,16 @@ from typing import Any, NamedTuple
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
-
-WIND, ROLLS, ALOFT = 21, 22, 23
-"""Indices of the readings of the wind in ``Gauges.reading``: its speed, that of rolls, and the share aloft."""
+from atmosbox.lab.kernels.readings import Reading
+from atmosbox.lab.kernels.sums import Sum, across
 
 
 class Flow(NamedTuple):
     """The data of the wind in the parts of the layers; all arrays are empty in a scene that does not show it.
 
-    ``sums : (3, part)`` are number and velocities along x and z of the molecules of each part in this frame; ``upright
-    : (part,)`` the squares of the velocities along z in a sample; ``total : (4,)`` the squares of the wind and of the
-    rolls, the number of samples in this frame, and the number of frames. ``high : (layer,)`` and ``wave : (wave,
-    column)`` are the shapes of rolls; ``column : (2, column)`` is scratch.
+    ``sums : (3, part)`` are number and velocities along x and z of the molecules of each part in this frame, and
+    ``frames : (1,)`` is the number of frames. ``high : (layer,)`` and ``wave : (wave, column)`` are the shapes of
+    rolls; ``column : (2, column)`` is scratch.
 
     ``tagged : (molecule,)`` is 1 for the molecules that are followed from the frame ``release`` on: those lower than
     ``low`` [length] and nearer than ``near`` to the middle, as a share of the width. ``wind : (2, part)`` is the wind
@@ -29,8 +27,7 @@ class Flow(NamedTuple):
     """
 
     sums: Any
-    upright: Any
-    total: Any
+    frames: Any
     high: Any
     wave: Any
     column: Any
@@ -50,78 +47,56 @@ def can_flow(modes: Modes) -> bool:
     return not (modes.rotation or modes.mixed or modes.piston or modes.phases)
 
 
-@kernel
-def _root(square):
-    """Return the root of a square, negative where noise has made it negative."""
-    return math.copysign(math.sqrt(abs(square)), square)
-
-
-@kernel
-def across(x, box):
-    """Return a coordinate along x over the side of the box, from 0 to 1."""
-    share = x / box.length_x
-    return share - math.floor(share) if box.inverse_x != 0.0 else share
-
-
 @functools.cache
 def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``begin``, ``note``, ``sample`` and ``end`` of one set of modes."""
-    if not can_flow(modes):
-        return _still()
+    """Return the kernels ``begin``, ``sample`` and ``end`` of one set of modes."""
 
     @kernel
     def begin(flow):
         """Begin to measure."""
         flow.sums[:] = 0.0
-        flow.total[:] = 0.0
+        flow.frames[0] = 0.0
         flow.tagged[:] = 0
         flow.wind[:] = 0.0
 
     @kernel
-    def note(part, speed, flow):
-        """Add the velocity along z of a molecule of a part to the sums of a sample."""
-        if flow.upright.size > 0:
-            flow.upright[part] += speed * speed
-
-    @kernel
-    def sample(scratch, mass, molecules, flow):
-        """Add the wind of a sample, whose sums over the parts of the layers are in `scratch`: see `sample_layers`."""
-        columns = flow.wave.shape[1]
+    def sample(gas, gauges):
+        """Add the wind of a sample, whose sums over the parts of the layers are known: see `instruments.Flow`."""
+        flow, columns, mass = gauges.flow, gauges.flow.wave.shape[1], gas.kinds.table[0].mass
         if columns == 0:
             return
-        wind = 0.0
+        molecules = gauges.whole.sums[0, Sum.NUMBER]
+        wind = rolls = 0.0
         flow.column[:] = 0.0
-        for part in range(flow.upright.size):
-            number, along, up = scratch[0, part], scratch[2, part] / mass, scratch[4, part] / mass
+        for part in range(flow.high.size * columns):
+            sums = gauges.parts.sums[part]
+            number, along, up = sums[Sum.NUMBER], sums[Sum.X] / mass, sums[Sum.Z] / mass
             flow.sums[0, part] += number
             flow.sums[1, part] += along
             flow.sums[2, part] += up
             if number > 1.0:
-                wind += (along * along + up * up - 2.0 * scratch[5, part] / mass) / (number - 1.0)
+                wind += (along * along + up * up - 2.0 * sums[Sum.KINETIC] / mass) / (number - 1.0)
             size = 2.0 * flow.high[part // columns] / molecules
             flow.column[0, part % columns] += size * up
-            flow.column[1, part % columns] += size * size * flow.upright[part]
-        rolls = 0.0
+            flow.column[1, part % columns] += size * size * sums[Sum.UPRIGHT]
         for k in range(flow.wave.shape[0]):
             amplitude = alone = 0.0
             for column in range(columns):
                 amplitude += flow.wave[k, column] * flow.column[0, column]
                 alone += flow.wave[k, column] ** 2 * flow.column[1, column]
             rolls += amplitude * amplitude - alone
-        flow.total[0] += wind / molecules
-        flow.total[1] += rolls
-        flow.total[2] += 1.0
-        flow.upright[:] = 0.0
+        gauges.means[Reading.WIND_SPEED] += wind / molecules
+        gauges.means[Reading.ROLL_SPEED] += rolls
 
     @kernel
-    def followed(gas, now, flow):
+    def followed(gas, now, gauges):
         """Return the share of the followed molecules in the upper half, and choose them when it is time."""
-        height = gas.box.length_z
+        flow, height = gauges.flow, gas.box.length_z
         held = aloft = 0.0
         for i in range(flow.tagged.size):
             at = motion_at(i, now, gas, modes)
-            if flow.total[3] == flow.release and at.z < flow.low and abs(across(at.x, gas.box) - 0.5) < flow.near:
-                flow.tagged[i] = 1
+            if flow.frames[0] == flow.release and at.z < flow.low:
+                flow.tagged[i] = abs(across(at.x, gas.box, gauges.parts) - 0.5) < flow.near
             if flow.tagged[i] == 1:
                 held += 1.0
                 aloft += 1.0 if at.z > 0.5 * height else 0.0
@@ -140,47 +115,23 @@ def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def end(gas, now, gauges):
         """Finish the wind of a frame, and read its speed, that of rolls, and the share of followed molecules aloft."""
-        flow = gauges.flow
-        if flow.upright.size == 0:
+        flow, sums, reading = gauges.flow, gauges.flow.sums, gauges.reading
+        if flow.high.size == 0:
             return
-        total, sums, reading = flow.total, flow.sums, gauges.reading
-        reading[ALOFT] = followed(gas, now, flow)
-        looks = max(total[2], 1.0)
-        fresh = max(flow.fresh, 1.0 / (total[3] + 1.0))
-        for part in range(flow.upright.size):
+        reading[Reading.TRACER_SHARE_ALOFT] = followed(gas, now, gauges)
+        for speed in (Reading.WIND_SPEED, Reading.ROLL_SPEED):  # their squares, negative where noise has made them so
+            reading[speed] = math.copysign(math.sqrt(abs(reading[speed])), reading[speed])
+        flow.frames[0] += 1.0
+        fresh = max(flow.fresh, 1.0 / flow.frames[0])
+        for part in range(sums.shape[1]):
             if sums[0, part] > 0.0:
                 for axis in range(2):
                     flow.wind[axis, part] += fresh * (sums[1 + axis, part] / sums[0, part] - flow.wind[axis, part])
-        reading[WIND], reading[ROLLS] = _root(total[0] / looks), _root(total[1] / looks)
         for layer in range(flow.high.size):
             gauges.layers[4 * flow.high.size + layer] = mean_along(layer, flow)
         sums[:] = 0.0
-        total[0] = total[1] = total[2] = 0.0
-        total[3] += 1.0
 
-    return begin, note, sample, end
-
-
-def _still() -> tuple[Callable[..., Any], ...]:
-    """Return the same kernels for a box in which no wind is measured."""
-
-    @kernel
-    def begin(flow):
-        """Do nothing."""
-
-    @kernel
-    def note(part, speed, flow):
-        """Do nothing."""
-
-    @kernel
-    def sample(scratch, mass, molecules, flow):
-        """Do nothing."""
-
-    @kernel
-    def end(gas, now, gauges):
-        """Do nothing."""
-
-    return begin, note, sample, end
+    return begin, sample, end
 
 
 @kernel
@@ -193,12 +144,14 @@ def _cooling(density, flow):
 
 
 @kernel
-def adiabat(box, mean, flow):
+def write_adiabat(box, mean, flow):
     """Write the temperature of air that has risen or sunk from the middle: `mean` holds densities, then kT of layers.
 
     It is NaN as long as a layer has no density.
     """
     layers = flow.adiabat.size
+    if layers == 0:
+        return
     thick = box.length_z / layers
     for layer in range(layers):
         flow.adiabat[layer] = 0.0

@@ -1,339 +1,255 @@
-"""Measurements in a page: thermometer, barometer, layers, speeds, light and heavy discs, a rising parcel, mixing.
+"""Measurements in a page: thermometer, barometer, layers, speeds, light and heavy discs, a rising parcel.
 
-These kernels compute the sums of `atmosbox.scene.instruments`. `plan` says which of them are shown and in which
-unit; the averages of many frames are in `averaging`.
+These kernels measure what the instruments of `atmosbox.scene.instruments` measure, from the sums over molecules of
+`sums`. `plan` says which variables are shown, and in which unit; the averages of many frames are in `averaging`.
 """
 
 import functools
 import math
 from collections.abc import Callable
-from enum import IntEnum
 from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.schedule import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.advance import ascent_of
-from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
-from atmosbox.lab.kernels.flowing import ALOFT, ROLLS, WIND, Flow, across, flowing
+from atmosbox.lab.kernels.attracting import energy_of_wells
+from atmosbox.lab.kernels.averaging import update
+from atmosbox.lab.kernels.flowing import Flow, can_flow, flowing, write_adiabat
 from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
-from atmosbox.lab.kernels.in_gas import is_away, number_in_gas
-from atmosbox.lab.kernels.two_gases import Mixture, mixing
+from atmosbox.lab.kernels.readings import ENERGY, TIME, Reading
+from atmosbox.lab.kernels.sums import Bins, Sum, ceiling, summing
+from atmosbox.lab.kernels.two_gases import Mixture, end_mixing
 
 
 class Gauges(NamedTuple):
     """The data of the instruments of a box.
 
-    ``reading : (Reading,)`` has the last readings. ``warmth : (2,)`` is the sum of kT over the samples of a frame
-    [energy], and their number; ``before : (8,)`` the impulses of the walls and the time at the end of the last frame,
-    and the energy at the start of all frames with what changes of gravity have given since [energy]. ``barometer`` says
-    which walls measure the pressure: 0 all, 4 the floor only.
+    ``reading : (Reading,)`` has the last readings, ``means : (Reading,)`` the sums over the samples of a frame of those
+    that are means, and ``samples : (1,)`` their number. ``before : (8,)`` are the impulses of the walls and the time at
+    the end of the last frame, and the energy at the start of all frames with what changes of gravity and of attraction
+    have given since [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4 the floor only.
 
-    ``edges : (bin + 1,)`` are the edges of the bins of speed [velocity], ``counts : (bin,)`` the molecules in them, and
-    ``speeds : (bin,)`` the share of molecules by speed [1/velocity]. ``sums : (4, layer)`` are number, energy, degrees
-    of freedom and, at the end of the last frame, virial of each layer; ``layers : (5 layer,)`` the same of the last
-    frame, with virial per time, and the wind along x; ``scratch : (6, part)`` is scratch for the parts of layers, whose
-    mean motion is not counted as warmth. All are empty in a scene that does not show them.
+    ``whole`` is a single bin; ``parts`` are those of the layers, whose mean motion is not counted as warmth; ``fast``
+    bins of speed; ``sides`` light and heavy discs, or two gases that mix across the box.
 
-    ``half : (molecule,)`` is 0 for a light disc and 1 for a heavy one, empty if molecules are alike; ``running : (8,)``
-    has sums of the mean energies of both halves [energy], the number of frames, the first energy, and the first
-    momentum. ``mixture`` are two gases that mix; ``water`` vapour and liquid, 0 in a box without water;
-    ``flow`` is the wind, 0 with kernels that do not measure it.
+    ``speeds : (bin,)`` is the share of molecules by speed [1/velocity]; ``layers : (5 layer,)`` are number, energy,
+    degrees of freedom, virial per time and wind along x of each layer, in the last frame, and ``virial : (layer,)`` the
+    virial at its end. ``running : (7,)`` has sums of the mean energies of light and heavy discs [energy], the number
+    of frames, the first energy, and the first momentum. ``mixture`` are two gases that mix; ``water`` vapour and
+    liquid, 0 in a box without water; ``flow`` is the wind, 0 with kernels that do not measure it.
     """
 
     reading: Any
-    warmth: Any
+    means: Any
+    samples: Any
     before: Any
     barometer: int
-    edges: Any
-    counts: Any
+    whole: Bins
+    parts: Bins
+    fast: Bins
+    sides: Bins
     speeds: Any
-    sums: Any
     layers: Any
-    scratch: Any
-    half: Any
+    virial: Any
     running: Any
     mixture: Mixture
     water: Hygrometer | int
     flow: Flow | int
 
 
-class Reading(IntEnum):
-    """Indices of ``Gauges.reading``; all readings are in reduced units. Those of water follow: `WaterReading`."""
-
-    TIME = 0
-    KT = 1
-    PRESSURE = 2
-    LEDGER = 3
-    CONTACTS = 4
-    LIGHT = 5
-    HEAVY = 6
-    ENERGY_CHANGE = 7
-    MOMENTUM = 8
-    PARCEL_KT = 9
-    PARCEL_PRESSURE = 10
-    MOMENT = 11
-    KINETIC = 12
-    AMPLITUDE = 13
-    ENTROPY = 14
-    WALL_KT = 15
-    WIND = WIND
-    ROLLS = ROLLS
-    ALOFT = ALOFT
-    GRAVITY = 24
-
-
-_TIME, ENERGY = 6, 7
-"""Indices of ``Gauges.before``."""
-
-
 @functools.cache
-def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``begin``, ``sample`` and ``end_frame`` of one set of modes."""
-    begin_mixing, end_mixing = mixing(modes)
-    begin_wind, note_wind, sample_wind, end_wind = flowing(modes)
+def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``begin``, ``sample``, ``end_frame`` and ``note_frame`` of one set of modes."""
+    sum_up = summing(modes)
+    flows = can_flow(modes)
+    begin_wind, sample_wind, end_wind = flowing(modes)
     begin_water, sample_water, condensed_energy, end_water = hygrometry(modes)
 
     @kernel
-    def ceiling(gas, now):
-        """Return the height of the ceiling [length]."""
-        piston = gas.walls.piston
-        return piston[0] + piston[1] * (now - piston[2])
+    def energy_now(gas, book, gauges):
+        """Return the energy of all molecules now, from their sums, of their attraction and of the liquid [energy]."""
+        whole = gauges.whole.sums[0]
+        energy = whole[Sum.KINETIC] + whole[Sum.ROTATION] + gas.box.gravity * whole[Sum.WEIGHT]
+        if wells:
+            energy += energy_of_wells(gas.wells)
+        return energy + condensed_energy(gas, book) if modes.phases else energy
 
     @kernel
-    def energies(gas, now):
-        """Return kinetic, rotational and potential energy [energy], and the total momentum along x, y and z."""
-        kinetic = rotational = potential = px = py = pz = 0.0
-        for i in range(gas.molecules.size):
-            if is_away(i, gas, modes):
-                continue
-            at = motion_at(i, now, gas, modes)
-            mass, _, _ = kind_of(i, gas, modes)
-            kinetic += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
-            potential += mass * gas.box.gravity * at.z
-            px += mass * at.vx
-            py += mass * at.vy
-            pz += mass * at.vz
-            if modes.rotation:
-                rotational += gas.kinds.rotational_energy[i]
-        return kinetic, rotational, potential, px, py, pz
-
-    @kernel
-    def sample_layers(gas, now, sums, scratch, flow):
-        """Count the molecules of each layer, and the energy of their disordered motion: see `layer_sample`."""
-        layers, parts = sums.shape[1], scratch.shape[1]
-        columns = parts // layers
-        height = ceiling(gas, now)
+    def sample_layers(gas, gauges):
+        """Add the molecules of each layer, and the energy of their disordered motion: see `layer_sample`."""
+        parts = gauges.parts
         planes = 2.0 if gas.box.planar else 3.0
-        scratch[:] = 0.0
-        for i in range(gas.molecules.size):
-            at = motion_at(i, now, gas, modes)
-            mass, _, _ = kind_of(i, gas, modes)
-            part = min(max(int(at.z / height * layers), 0), layers - 1)
-            if columns > 1:
-                column = int(across(at.x, gas.box) * columns)
-                part = part * columns + min(max(column, 0), columns - 1)
-            scratch[0, part] += 1.0
-            scratch[1, part] += mass
-            scratch[2, part] += mass * at.vx
-            scratch[3, part] += mass * at.vy
-            scratch[4, part] += mass * at.vz
-            scratch[5, part] += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
-            note_wind(part, at.vz, flow)
-        for part in range(parts):
-            number, weight, energy = scratch[0, part], scratch[1, part], scratch[5, part]
-            px, py, pz = scratch[2, part], scratch[3, part], scratch[4, part]
-            layer = part // columns
-            if number > 0.0:
-                sums[0, layer] += number
-                sums[1, layer] += energy - 0.5 * (px * px + py * py + pz * pz) / weight
-                sums[2, layer] += planes * (number - 1.0)
-        mass, _, _ = kind_of(0, gas, modes)
-        sample_wind(scratch, mass, gas.molecules.size, flow)
+        for part in range(parts.rows * parts.columns):
+            sums, layer = parts.sums[part], part // parts.columns
+            if sums[Sum.NUMBER] > 0.0:
+                drift = (sums[Sum.X] * sums[Sum.X] + sums[Sum.Y] * sums[Sum.Y] + sums[Sum.Z] * sums[Sum.Z]) / sums[
+                    Sum.MASS
+                ]
+                gauges.layers[layer] += sums[Sum.NUMBER]
+                gauges.layers[parts.rows + layer] += sums[Sum.KINETIC] - 0.5 * drift
+                gauges.layers[2 * parts.rows + layer] += planes * (sums[Sum.NUMBER] - 1.0)
 
     @kernel
     def sample(gas, ascent, book, gauges):
         """Take a sample for the means of a frame."""
-        now = book.now[0]
-        twice = 0.0
-        bins = gauges.counts.size
-        for i in range(gas.molecules.size):
-            if is_away(i, gas, modes):
-                continue
-            at = motion_at(i, now, gas, modes)
-            mass, _, _ = kind_of(i, gas, modes)
-            square = at.vx * at.vx + at.vy * at.vy + at.vz * at.vz
-            twice += mass * square
-            if bins > 0:
-                speed = math.sqrt(square)
-                low, high = gauges.edges[0], gauges.edges[bins]
-                if low <= speed <= high:
-                    gauges.counts[min(int((speed - low) / (high - low) * bins), bins - 1)] += 1.0
+        if gauges.samples[0] == 0.0:
+            gauges.means[:] = 0.0
+            gauges.speeds[:] = 0.0
+            gauges.layers[:] = 0.0
+        gauges.samples[0] += 1.0
+        sum_up(gas, book.now[0], (gauges.whole, gauges.parts, gauges.fast, gauges.sides))
+        whole = gauges.whole.sums[0]
         planes = 2.0 if gas.box.planar else 3.0
-        gauges.warmth[0] += twice / (planes * number_in_gas(gas, modes))
-        gauges.warmth[1] += 1.0
+        gauges.means[Reading.AIR_TEMPERATURE] += 2.0 * whole[Sum.KINETIC] / (planes * whole[Sum.NUMBER])
+        for k in range(gauges.speeds.size):
+            gauges.speeds[k] += gauges.fast.sums[k, Sum.NUMBER]
+        if gauges.layers.size > 0:
+            sample_layers(gas, gauges)
+        if flows:
+            sample_wind(gas, gauges)
         if modes.phases:
-            kinetic, rotational, _, _, _, _ = energies(gas, now)
-            sample_water(gas, ascent, book, kinetic + rotational, ceiling(gas, now), gauges)
-        if gauges.sums.shape[1] > 0:
-            sample_layers(gas, now, gauges.sums, gauges.scratch, gauges.flow)
+            sample_water(gas, ascent, book, gauges)
         return 0
 
     @kernel
-    def open_faces(gas, now):
-        """Return the areas of the walls across x, y and z that centres of molecules can reach: see `open_faces`."""
-        mean = 0.0
-        for i in range(gas.molecules.size):
-            if not is_away(i, gas, modes):
-                _, radius, _ = kind_of(i, gas, modes)
-                mean += 2.0 * radius
-        mean /= max(number_in_gas(gas, modes), 1)
-        box = gas.box
+    def pressure(gas, now, lasted, gauges):
+        """Return the pressure of the frame from the impulses on the walls [energy/length^3]: see `open_faces`."""
+        box, whole = gas.box, gauges.whole.sums[0]
+        mean = whole[Sum.DIAMETER] / max(whole[Sum.NUMBER], 1.0)
         x = box.length_x - (mean if box.inverse_x == 0.0 else 0.0)
         y = 1.0 if box.planar else box.length_y - (mean if box.inverse_y == 0.0 else 0.0)
         z = ceiling(gas, now) - (mean if box.inverse_z == 0.0 else 0.0)
-        ax = y * z if box.inverse_x == 0.0 else 0.0
-        ay = x * z if box.inverse_y == 0.0 and not box.planar else 0.0
-        az = x * y if box.inverse_z == 0.0 else 0.0
-        return ax, ay, az
-
-    @kernel
-    def pressure(gas, now, lasted, gauges):
-        """Return the pressure of the frame from the impulses on the walls [energy/length^3]."""
-        ax, ay, az = open_faces(gas, now)
+        faces = (
+            y * z if box.inverse_x == 0.0 else 0.0,
+            x * z if box.inverse_y == 0.0 and not box.planar else 0.0,
+            x * y if box.inverse_z == 0.0 else 0.0,
+        )
         impulse = area = 0.0
         for wall in range(6):
             if gauges.barometer == 0 or gauges.barometer == wall:
                 impulse += gas.tallies.impulse[wall] - gauges.before[wall]
-                area += ax if wall < 2 else (ay if wall < 4 else az)
+                area += faces[wall // 2]
         return impulse / (area * lasted) if area > 0.0 and lasted > 0.0 else math.nan
 
     @kernel
-    def end_halves(gas, book, total, px, py, pz, gauges):
+    def end_discs(gas, total, gauges):
         """Measure the energies of the light and of the heavy discs, and check the balance of their momentum."""
-        light = heavy = mass_sum = 0.0
-        lighter = heavier = 0
-        for i in range(gas.molecules.size):
-            at = motion_at(i, book.now[0], gas, modes)
-            mass, _, _ = kind_of(i, gas, modes)
-            mass_sum += mass
-            energy = 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
-            if gauges.half[i] == 0:
-                light += energy
-                lighter += 1
-            else:
-                heavy += energy
-                heavier += 1
-        outward = gas.tallies.impulse
-        px -= outward[0] - outward[1]
-        py -= outward[2] - outward[3]
-        pz -= outward[4] - outward[5]
-        running = gauges.running
-        if running[2] == 0.0:
-            running[3], running[4], running[5], running[6] = total, px, py, pz
-        running[0] += light / max(lighter, 1)
-        running[1] += heavy / max(heavier, 1)
+        reading, running, outward = gauges.reading, gauges.running, gas.tallies.impulse
+        whole, half = gauges.whole.sums[0], gauges.sides.sums
+        first = running[2] == 0.0
+        if first:
+            running[3] = total
         running[2] += 1.0
-        size = math.sqrt(2.0 * mass_sum * running[3])
-        gone = (px - running[4]) ** 2 + (py - running[5]) ** 2 + (pz - running[6]) ** 2
-        gauges.reading[Reading.LIGHT] = running[0] / running[2]
-        gauges.reading[Reading.HEAVY] = running[1] / running[2]
-        gauges.reading[Reading.ENERGY_CHANGE] = total / running[3] - 1.0
-        gauges.reading[Reading.MOMENTUM] = math.sqrt(gone) / size if size > 0.0 else 0.0
+        for k in range(2):
+            running[k] += half[k, Sum.KINETIC] / max(half[k, Sum.NUMBER], 1.0)
+            reading[Reading.RUNNING_ENERGY_LIGHT + k] = running[k] / running[2]
+        gone = 0.0
+        for axis in range(3):
+            momentum = whole[Sum.X + axis] - (outward[2 * axis] - outward[2 * axis + 1])
+            if first:
+                running[4 + axis] = momentum
+            gone += (momentum - running[4 + axis]) ** 2
+        size = math.sqrt(2.0 * whole[Sum.MASS] * running[3])
+        reading[Reading.ENERGY_CHANGE] = total / running[3] - 1.0
+        reading[Reading.MOMENTUM_RESIDUAL] = math.sqrt(gone) / size if size > 0.0 else 0.0
 
-    if modes.ascends and not modes.phases:
+    @kernel
+    def end_lift(gas, ascent, book, gauges):
+        """Read the state of a rising parcel from its energy ledger: see `instruments.Lift`."""
+        lift, reading = ascent.lift, gauges.reading
+        here = ascent_of(ascent, book, ascent.filled)
+        at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, here)
+        kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
+        reading[Reading.PARCEL_TEMPERATURE] = kT
+        reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)
+        reading[Reading.MOMENT] = interpolate(reading[Reading.ELAPSED_TIME], lift.course_time, lift.course_moment)
 
-        @kernel
-        def end_lift(gas, ascent, book, gauges):
-            """Read the state of a rising parcel from its energy ledger: see `instruments.Lift`."""
-            lift = ascent.lift
-            here = ascent_of(ascent, book, ascent.filled)
-            at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, here)
-            kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
-            gauges.reading[Reading.PARCEL_KT] = kT
-            gauges.reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)
-            time, turns = gauges.reading[Reading.TIME], lift.course_time
-            moment = lift.course_moment[0]
-            for k in range(1, turns.size):
-                if time >= turns[k]:
-                    moment = lift.course_moment[k]
-                elif time > turns[k - 1]:
-                    share = (time - turns[k - 1]) / (turns[k] - turns[k - 1])
-                    moment = lift.course_moment[k - 1] + share * (lift.course_moment[k] - lift.course_moment[k - 1])
-            gauges.reading[Reading.MOMENT] = moment
-
-    else:
-
-        @kernel
-        def end_lift(gas, ascent, book, gauges):
-            """Read nothing: this box does not rise, or `end_water` reads its state."""
+    @kernel
+    def begin_frame(gas, time, gauges):
+        """Keep what a frame begins with."""
+        for wall in range(6):
+            gauges.before[wall] = gas.tallies.impulse[wall]
+        for layer in range(gauges.virial.size):
+            gauges.virial[layer] = gas.tallies.virial[layer]
+        gauges.before[TIME] = time
+        gauges.samples[0] = 0.0
+        gauges.reading[Reading.MOLECULES_IN_GAS] = gauges.whole.sums[0, Sum.NUMBER]
 
     @kernel
     def begin(gas, ascent, book, gauges):
         """Begin to measure."""
-        now = book.now[0]
-        kinetic, rotational, potential, _, _, _ = energies(gas, now)
-        for wall in range(6):
-            gauges.before[wall] = gas.tallies.impulse[wall]
-        gauges.before[_TIME] = gas.walls.epoch[0] + now
-        gauges.before[ENERGY] = kinetic + rotational + potential + condensed_energy(gas, book)
-        gauges.warmth[:] = 0.0
-        gauges.counts[:] = 0.0
-        gauges.sums[:] = 0.0
-        for layer in range(gauges.sums.shape[1]):
-            gauges.sums[3, layer] = gas.tallies.virial[layer]
+        sum_up(gas, book.now[0], (gauges.whole, gauges.parts, gauges.fast, gauges.sides))
+        begin_frame(gas, gas.walls.epoch[0] + book.now[0], gauges)
+        gauges.before[ENERGY] = energy_now(gas, book, gauges)
         gauges.running[:] = 0.0
-        begin_mixing(gauges.mixture)
-        begin_wind(gauges.flow)
-        begin_water(gas, book, gauges)
+        gauges.mixture.off[:] = math.inf
+        gauges.mixture.mean[:] = math.nan
+        gauges.mixture.error[:] = math.nan
+        if flows:
+            begin_wind(gauges.flow)
+        if modes.phases:
+            begin_water(book, gauges)
         return 0
 
     @kernel
     def end_frame(gas, ascent, book, gauges):
-        """Take the readings at the end of a frame, and complete the means of the frame."""
-        reading, now = gauges.reading, book.now[0]
+        """Take the readings at the end of a frame, which is the moment of its last sample, and complete its means."""
+        reading, now, samples = gauges.reading, book.now[0], max(gauges.samples[0], 1.0)
         time = gas.walls.epoch[0] + now
-        lasted = time - gauges.before[_TIME]
-        kinetic, rotational, potential, px, py, pz = energies(gas, now)
-        total = kinetic + rotational + potential + condensed_energy(gas, book)
+        lasted = time - gauges.before[TIME]
+        total = energy_now(gas, book, gauges)
         given = passed = 0.0
         for wall in range(6):
             given += gas.tallies.heat[wall] + gas.tallies.work[wall]
             passed += abs(gas.tallies.heat[wall]) + abs(gas.tallies.work[wall])
-        largest = max(abs(total), abs(gauges.before[ENERGY]), passed)
-        reading[Reading.TIME] = time
-        reading[Reading.KT] = gauges.warmth[0] / max(gauges.warmth[1], 1.0)
-        reading[Reading.PRESSURE] = pressure(gas, now, lasted, gauges)
-        reading[Reading.LEDGER] = abs(total - gauges.before[ENERGY] - given) / largest if largest > 0.0 else 0.0
-        reading[Reading.CONTACTS] = gas.tallies.count[0]
-        reading[Reading.KINETIC] = kinetic
+        if wells:
+            given += gas.bath.heat[0]
+            passed += abs(gas.bath.heat[0])
+        largest = max(abs(total), abs(gauges.before[ENERGY]), passed, gauges.whole.sums[0, Sum.KINETIC])
+        for k in range(reading.size):
+            reading[k] = gauges.means[k] / samples
+        reading[Reading.ELAPSED_TIME] = time
+        reading[Reading.AIR_PRESSURE] = pressure(gas, now, lasted, gauges)
+        reading[Reading.LEDGER_RESIDUAL] = (
+            abs(total - gauges.before[ENERGY] - given) / largest if largest > 0.0 else 0.0
+        )
+        reading[Reading.COLLISION_COUNT] = gas.tallies.count[0]
+        reading[Reading.KINETIC_ENERGY] = gauges.whole.sums[0, Sum.KINETIC]
         reading[Reading.GRAVITY] = gas.box.gravity
         for wall in range(6):
             warm = gas.walls.law[wall] == HEAT_BATH
-            reading[Reading.WALL_KT + wall] = wall_kT(gas.walls, wall, time) if warm else math.nan
-            gauges.before[wall] = gas.tallies.impulse[wall]
-        gauges.before[_TIME] = time
-        samples = max(gauges.warmth[1], 1.0)
-        for k in range(gauges.counts.size):
-            width = gauges.edges[k + 1] - gauges.edges[k]
-            gauges.speeds[k] = gauges.counts[k] / (samples * gas.molecules.size) / width
-        layers = gauges.sums.shape[1]
+            reading[Reading.WALL_TEMPERATURE + wall] = wall_kT(gas.walls, wall, time) if warm else math.nan
+        for k in range(gauges.speeds.size):
+            width = gauges.fast.edges[k + 1] - gauges.fast.edges[k]
+            gauges.speeds[k] /= samples * gauges.whole.sums[0, Sum.NUMBER] * width
+        layers = gauges.virial.size
         for layer in range(layers):
             for k in range(3):
-                gauges.layers[k * layers + layer] = gauges.sums[k, layer] / samples
-                gauges.sums[k, layer] = 0.0
-            gauges.layers[3 * layers + layer] = (gas.tallies.virial[layer] - gauges.sums[3, layer]) / lasted
-            gauges.sums[3, layer] = gas.tallies.virial[layer]
-        if gauges.half.size > 0:
-            end_halves(gas, book, total, px, py, pz, gauges)
-        if gauges.mixture.right.size > 0:
-            reading[Reading.AMPLITUDE], reading[Reading.ENTROPY] = end_mixing(gas, now, time, gauges.mixture)
-        end_lift(gas, ascent, book, gauges)
-        end_wind(gas, now, gauges)
-        end_water(gas, ascent, book, time, lasted, gauges)
-        gauges.warmth[:] = 0.0
-        gauges.counts[:] = 0.0
+                gauges.layers[k * layers + layer] /= samples
+            gauges.layers[3 * layers + layer] = (gas.tallies.virial[layer] - gauges.virial[layer]) / lasted
+        if gauges.running.size > 0:
+            end_discs(gas, total, gauges)
+        if gauges.sides.columns > 1:
+            end_mixing(time, gauges)
+        if flows:
+            end_wind(gas, now, gauges)
+        if modes.phases:
+            end_water(gas, ascent, book, time, lasted, gauges)
+        elif modes.ascends:
+            end_lift(gas, ascent, book, gauges)
+        begin_frame(gas, time, gauges)
         return 0
 
-    return begin, sample, end_frame
+    @kernel
+    def note_frame(gas, gauges, speeds, layers):
+        """Add the frame that has ended to the averages."""
+        update(gauges.speeds, speeds, 0, gas.box)
+        update(gauges.layers, layers, gauges.parts.rows, gas.box)
+        if flows:
+            write_adiabat(gas.box, layers.mean, gauges.flow)
+        return 0
+
+    return begin, sample, end_frame, note_frame

@@ -3,7 +3,6 @@
 import functools
 import math
 from collections.abc import Callable
-from enum import IntEnum
 from typing import Any, NamedTuple
 
 from atmosbox.engine.core.elementary import exp, log
@@ -21,16 +20,16 @@ from atmosbox.engine.liquid.reservoir import (
     THERMAL,
     heat_capacity,
 )
-from atmosbox.lab.kernels.in_gas import number_in_gas
+from atmosbox.lab.kernels.readings import Reading
+from atmosbox.lab.kernels.sums import Sum, ceiling
 
 
 class Hygrometer(NamedTuple):
     """The data of the instruments for the water of a box.
 
-    ``sums : (10,)`` are sums over the samples of a frame, see `Sampled`; ``before : (2,)`` the numbers of molecules
-    that had condensed and evaporated at the end of the last frame; ``met : (4,)`` sums over all frames of the rate of
-    evaporation times the temperature of the liquid, of that rate times the temperature of the gas, of the rate itself,
-    and the number of frames without liquid.
+    ``before : (2,)`` are the numbers of molecules that had condensed and evaporated at the end of the last frame;
+    ``met : (4,)`` sums over all frames of the rate of evaporation times the temperature of the liquid, of that rate
+    times the temperature of the gas, of the rate itself, and the number of frames without liquid.
 
     ``contact : (term,)`` are the coefficients of the contact value g in powers of phi / (1 - phi), with
     Z = 1 + 4 phi g; ``volatility``, ``power`` and ``binding`` those of the vapour pressure, see `Substance`, up to the
@@ -48,7 +47,6 @@ class Hygrometer(NamedTuple):
     engine make one bin. The arrays are empty in a scene that does not show them.
     """
 
-    sums: Any
     before: Any
     met: Any
     contact: Any
@@ -70,51 +68,6 @@ class Hygrometer(NamedTuple):
     merged: int
 
 
-class Sampled(IntEnum):
-    """Indices of ``Hygrometer.sums``."""
-
-    KT = 0
-    PRESSURE = 1
-    LIQUID_KT = 2
-    VAPOUR = 3
-    LIQUID = 4
-    RAIN = 5
-    PARCEL_LOG_PRESSURE = 6
-    ADIABAT = 7
-    ROOM_PRESSURE = 8
-    NUMBER = 9
-
-
-class WaterReading(IntEnum):
-    """Indices of the readings of water in ``Gauges.reading``; all in reduced units, ratios by number of molecules."""
-
-    VAPOUR_PRESSURE = 32
-    SATURATION = 33
-    HUMIDITY = 34
-    GAS_KT = 35
-    LIQUID_KT = 36
-    CONDENSING = 37
-    EVAPORATING = 38
-    VAPOUR_RATIO = 39
-    LIQUID_RATIO = 40
-    RAIN_RATIO = 41
-    VAPOUR = 42
-    LIQUID = 43
-    RAINED = 44
-    OPEN = 45
-    LIQUID_SATURATION = 46
-    LEFT_KT = 47
-    PARCEL_KT = 48
-    PARCEL_PRESSURE = 49
-    ADIABAT = 50
-    MIDDLE = 51
-    MOLECULES = 52
-    SATURATION_RATIO = 53
-    SALTED_RADIUS = 54
-    PURE_RADIUS = 55
-    BUOYANCY = 56
-
-
 @kernel
 def saturation_pressure(kT, water):
     """Return the saturation vapour pressure over a liquid [energy/length^3]: see `Substance`."""
@@ -125,8 +78,6 @@ def saturation_pressure(kT, water):
 @functools.cache
 def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``begin``, ``sample``, ``condensed_energy`` and ``end_frame`` of one set of modes."""
-    if not modes.phases:
-        return _nothing()
 
     @kernel
     def factor(density, diameter, water):
@@ -180,36 +131,35 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return total / number if number > 0.0 else math.nan
 
     @kernel
-    def sample(gas, ascent, book, energy, height, gauges):
+    def sample(gas, ascent, book, gauges):
         """Sample vapour pressure, temperatures, and the amounts of vapour, liquid and rain."""
-        wet, water, box = book.moisture, gauges.water, gas.box
-        reservoir, sums = wet.reservoir, water.sums
-        missing = reservoir.top[0]
-        number, vapour = number_in_gas(gas, modes), wet.vapours - missing
+        wet, water, box, means = book.moisture, gauges.water, gas.box, gauges.means
+        reservoir, whole, height = wet.reservoir, gauges.whole.sums[0], ceiling(gas, book.now[0])
+        number, missing, wide = whole[Sum.NUMBER], reservoir.top[0], reservoir.diameter
+        vapour = wet.vapours - missing
         air = number - vapour
         rotations = wet.rotations - reservoir.rotation * missing
-        kT = 2.0 * energy / (3.0 * number + rotations)
-        wide = reservoir.diameter
+        kT = 2.0 * (whole[Sum.KINETIC] + whole[Sum.ROTATION]) / (3.0 * number + rotations)
         x = box.length_x - (wide if box.inverse_x == 0.0 else 0.0)
         y = box.length_y - (wide if box.inverse_y == 0.0 else 0.0)
         z = height - (wide if box.inverse_z == 0.0 else 0.0)
+        volume = box.length_x * box.length_y * height
         density = number / (x * y * z)
-        pressure = vapour / (x * y * z) * kT * factor(number / (box.length_x * box.length_y * height), wide, water)
-        sums[Sampled.KT] += kT
-        sums[Sampled.PRESSURE] += pressure
-        sums[Sampled.LIQUID_KT] += liquid_kT(reservoir)
-        sums[Sampled.VAPOUR] += vapour / air if air > 0 else math.nan
-        sums[Sampled.LIQUID] += reservoir.count[LIQUID] / air if air > 0 else math.nan
-        sums[Sampled.RAIN] += reservoir.count[RAINED] / air if air > 0 else math.nan
-        sums[Sampled.NUMBER] += 1.0
+        pressure = vapour / (x * y * z) * kT * factor(number / volume, wide, water)
+        means[Reading.GAS_TEMPERATURE] += kT
+        means[Reading.WATER_VAPOR_PARTIAL_PRESSURE] += pressure
+        means[Reading.LIQUID_TEMPERATURE] += liquid_kT(reservoir)
+        means[Reading.HUMIDITY_MIXING_RATIO] += vapour / air if air > 0.0 else math.nan
+        means[Reading.CLOUD_LIQUID_WATER_MIXING_RATIO] += reservoir.count[LIQUID] / air if air > 0.0 else math.nan
+        means[Reading.RAIN_MIXING_RATIO] += reservoir.count[RAINED] / air if air > 0.0 else math.nan
         if modes.ascends:
             logarithm = log(density * kT * (1.0 + ascent.lift.measured[0] * density))
-            sums[Sampled.PARCEL_LOG_PRESSURE] += logarithm
+            means[Reading.PARCEL_PRESSURE] += logarithm
             if water.adiabat.size > 0:
-                sums[Sampled.ADIABAT] += adiabat(gas.walls.epoch[0] + book.now[0], logarithm, ascent.lift, water)
+                time = gas.walls.epoch[0] + book.now[0]
+                means[Reading.ADIABAT_TEMPERATURE] += adiabat(time, logarithm, ascent.lift, water)
         if modes.drops > 0:
-            volume = box.length_x * box.length_y * height
-            sums[Sampled.ROOM_PRESSURE] += pressure / room(gas, wet.drops, volume)
+            means[Reading.SATURATION_RATIO] += pressure / room(gas, wet.drops, volume)
 
     @kernel
     def condensed_energy(gas, book):
@@ -228,13 +178,11 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return energy
 
     @kernel
-    def begin(gas, book, gauges):
+    def begin(book, gauges):
         """Begin to measure."""
         count, water = book.moisture.reservoir.count, gauges.water
-        water.sums[:] = 0.0
         water.met[:] = 0.0
         water.before[0], water.before[1] = count[CONDENSED], count[EVAPORATED]
-        gauges.reading[WaterReading.MOLECULES] = number_in_gas(gas, modes)
 
     @kernel
     def end_leaving(reservoir, water):
@@ -256,82 +204,48 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_frame(gas, ascent, book, time, lasted, gauges):
-        """Read the counters, and complete the means of the frame."""
+        """Read the counters, and what follows from the means of the frame."""
         reading, water, wet = gauges.reading, gauges.water, book.moisture
-        reservoir, sums = wet.reservoir, water.sums
-        count = reservoir.count
-        for k in range(sums.size):
-            if k != Sampled.NUMBER:
-                sums[k] /= max(sums[Sampled.NUMBER], 1.0)
-        kT, liquid = sums[Sampled.KT], sums[Sampled.LIQUID_KT]
-        saturation = saturation_pressure(kT, water)
-        reading[WaterReading.VAPOUR_PRESSURE] = sums[Sampled.PRESSURE]
-        reading[WaterReading.SATURATION] = saturation
-        reading[WaterReading.HUMIDITY] = sums[Sampled.PRESSURE] / saturation if saturation > 0.0 else math.nan
-        reading[WaterReading.GAS_KT] = kT
-        reading[WaterReading.LIQUID_KT] = liquid
-        reading[WaterReading.CONDENSING] = (count[CONDENSED] - water.before[0]) / lasted
-        reading[WaterReading.EVAPORATING] = (count[EVAPORATED] - water.before[1]) / lasted
-        reading[WaterReading.VAPOUR_RATIO] = sums[Sampled.VAPOUR]
-        reading[WaterReading.LIQUID_RATIO] = sums[Sampled.LIQUID]
-        reading[WaterReading.RAIN_RATIO] = sums[Sampled.RAIN]
-        reading[WaterReading.VAPOUR] = wet.vapours - reservoir.top[0]
-        reading[WaterReading.LIQUID] = count[LIQUID]
-        reading[WaterReading.RAINED] = count[RAINED]
-        reading[WaterReading.MOLECULES] = number_in_gas(gas, modes)
-        reading[WaterReading.OPEN] = reservoir.rates[STICKING]
-        reading[WaterReading.LIQUID_SATURATION] = saturation_pressure(liquid, water) if liquid >= 0.0 else math.nan
+        reservoir, count, met = wet.reservoir, wet.reservoir.count, water.met
+        kT, liquid = reading[Reading.GAS_TEMPERATURE], reading[Reading.LIQUID_TEMPERATURE]
+        pressure, saturation = reading[Reading.WATER_VAPOR_PARTIAL_PRESSURE], saturation_pressure(kT, water)
+        rate = (count[EVAPORATED] - water.before[1]) / lasted
+        reading[Reading.SATURATION_VAPOR_PRESSURE] = saturation
+        reading[Reading.RELATIVE_HUMIDITY] = pressure / saturation if saturation > 0.0 else math.nan
+        reading[Reading.CONDENSATION_RATE] = (count[CONDENSED] - water.before[0]) / lasted
+        reading[Reading.EVAPORATION_RATE] = rate
+        reading[Reading.VAPOR_MOLECULE_COUNT] = wet.vapours - reservoir.top[0]
+        reading[Reading.LIQUID_MOLECULE_COUNT] = count[LIQUID]
+        reading[Reading.RAINED_MOLECULE_COUNT] = count[RAINED]
+        reading[Reading.POOL_OPEN_SHARE] = reservoir.rates[STICKING]
+        saturation = saturation_pressure(liquid, water) if liquid >= 0.0 else math.nan
+        reading[Reading.LIQUID_SATURATION_VAPOR_PRESSURE] = saturation
         # the temperature of the liquid when molecules left it; while there was none, that of the gas
-        rate = reading[WaterReading.EVAPORATING]
         if liquid >= 0.0:
-            water.met[0] += rate * liquid
+            met[0] += rate * liquid
         else:
-            water.met[3] += 1.0
-        water.met[1] += rate * kT
-        water.met[2] += rate
-        warm = water.met[1] if water.met[3] > 0.0 else water.met[0]
-        reading[WaterReading.LEFT_KT] = warm / water.met[2] if water.met[2] > 0.0 else math.nan
+            met[3] += 1.0
+        met[1] += rate * kT
+        met[2] += rate
+        warm = met[1] if met[3] > 0.0 else met[0]
+        reading[Reading.TEMPERATURE_OF_THOSE_THAT_LEFT] = warm / met[2] if met[2] > 0.0 else math.nan
         if water.width.size > 0:
             end_leaving(reservoir, water)
-        if modes.ascends and water.adiabat.size > 0:
-            lift = ascent.lift
-            reading[WaterReading.PARCEL_KT] = kT
-            reading[WaterReading.PARCEL_PRESSURE] = exp(sums[Sampled.PARCEL_LOG_PRESSURE])
-            reading[WaterReading.ADIABAT] = sums[Sampled.ADIABAT]
-            reading[WaterReading.MIDDLE] = interpolate(time - 0.5 * lasted, lift.course_time, lift.course_moment)
+        if modes.ascends:
+            lift, logarithm = ascent.lift, reading[Reading.PARCEL_PRESSURE]
+            reading[Reading.PARCEL_TEMPERATURE] = kT
+            reading[Reading.PARCEL_PRESSURE] = exp(logarithm)
+            reading[Reading.MOMENT] = interpolate(time - 0.5 * lasted, lift.course_time, lift.course_moment)
             if water.level.size > 0:
-                vapour, held = sums[Sampled.VAPOUR], sums[Sampled.LIQUID]
-                dense = kT * (1.0 + vapour) / (1.0 + water.mass * (vapour + held))
-                beside = interpolate(sums[Sampled.PARCEL_LOG_PRESSURE], water.level, water.around)
-                reading[WaterReading.BUOYANCY] = dense / beside - 1.0
+                vapour = reading[Reading.HUMIDITY_MIXING_RATIO]
+                held = vapour + reading[Reading.CLOUD_LIQUID_WATER_MIXING_RATIO]
+                dense = kT * (1.0 + vapour) / (1.0 + water.mass * held)
+                beside = interpolate(logarithm, water.level, water.around)
+                reading[Reading.PARCEL_BUOYANCY] = dense / beside - 1.0
         if modes.drops > 0:
-            reading[WaterReading.SATURATION_RATIO] = sums[Sampled.ROOM_PRESSURE] / saturation_pressure(liquid, water)
-            reading[WaterReading.SALTED_RADIUS] = mean_radius(gas, wet.drops, True)
-            reading[WaterReading.PURE_RADIUS] = mean_radius(gas, wet.drops, False)
+            reading[Reading.SATURATION_RATIO] /= saturation
+            reading[Reading.SALTED_DROP_RADIUS] = mean_radius(gas, wet.drops, True)
+            reading[Reading.PURE_DROP_RADIUS] = mean_radius(gas, wet.drops, False)
         water.before[0], water.before[1] = count[CONDENSED], count[EVAPORATED]
-        sums[:] = 0.0
-
-    return begin, sample, condensed_energy, end_frame
-
-
-def _nothing() -> tuple[Callable[..., Any], ...]:
-    """Return the same kernels for a box without water."""
-
-    @kernel
-    def begin(gas, book, gauges):
-        """Do nothing."""
-
-    @kernel
-    def sample(gas, ascent, book, energy, height, gauges):
-        """Do nothing."""
-
-    @kernel
-    def condensed_energy(gas, book):
-        """Return zero: there is no water."""
-        return 0.0
-
-    @kernel
-    def end_frame(gas, ascent, book, time, lasted, gauges):
-        """Do nothing."""
 
     return begin, sample, condensed_energy, end_frame

@@ -1,4 +1,4 @@
-"""The kernels that knobs call: gravity, and the walls and the pool of a box with liquid.
+"""The kernels that knobs call: the walls, the pool, the moment of an ascent, and gravity.
 
 `gravity_setter` does what `ParcelSet.set_gravity` does. Gravity is a number among the arguments of each kernel that
 moves molecules. This kernel uses the old one. It brings all molecules to the present and chooses layers of cells; then
@@ -11,49 +11,46 @@ from collections.abc import Callable
 from typing import Any
 
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.schedule import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, SPECULAR
+from atmosbox.engine.exact.advance import dry_loop
 from atmosbox.engine.exact.encounter import kind_of
 from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import Column, Layout, write_column
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.liquid.reservoir import cover
-from atmosbox.lab.kernels.gauging import ENERGY
 from atmosbox.lab.kernels.pairwise import pairwise_sum
+from atmosbox.lab.kernels.readings import ENERGY
 from atmosbox.lab.kernels.starting import can_start
 
 
-def has_moist_knobs(modes: Modes) -> bool:
-    """Return whether a box with liquid has knobs: one with visible drops or with a rising cloud has none."""
-    return not modes.drops and (modes.pool or not modes.ascends)
-
-
 @functools.cache
-def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
-    """Return the kernels that knobs of a box with liquid call, by name."""
-    if not has_moist_knobs(modes):
-        return {}
-    _, draw, wake = moist_loop(modes)
+def knobs(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
+    """Return the kernels that knobs of a box call, by name; ``wells`` if molecules attract each other."""
+    _, draw, wake = (moist_loop if modes.phases else dry_loop)(modes)
 
     @kernel
     def warm_walls(gas, book, first, last, kT):
-        """Make walls heat baths of a temperature [energy]: see `set_wall`, and `set_wall_kT` for present heat baths."""
+        """Set the temperature of heat baths [energy]: see `set_wall_kT`; with liquid, of any wall, see `set_wall`."""
         walls = gas.walls
-        wake(gas, book, math.sqrt(8.0 * kT / gas.kinds.table[book.moisture.reservoir.kind].mass))
+        if modes.phases:
+            wake(gas, book, math.sqrt(8.0 * kT / gas.kinds.table[book.moisture.reservoir.kind].mass))
         for wall in range(first, last):
-            walls.law[wall] = HEAT_BATH
-            walls.accommodation[wall] = 1.0
-            for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
-                walls.schedule_kT[k] = kT
+            if modes.phases:
+                walls.law[wall] = HEAT_BATH
+                walls.accommodation[wall] = 1.0
+            if walls.law[wall] == HEAT_BATH:
+                for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
+                    walls.schedule_kT[k] = kT
         return 0
 
     @kernel
     def smooth_walls(gas, first, last):
         """Make heat baths smooth walls again."""
-        walls = gas.walls
         for wall in range(first, last):
-            walls.law[wall] = SPECULAR
-            walls.accommodation[wall] = 0.0
+            gas.walls.law[wall] = SPECULAR
+            gas.walls.accommodation[wall] = 0.0
         return 0
 
     @kernel
@@ -63,8 +60,25 @@ def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
         draw(gas, book, book.moisture.reservoir.bound[0])
         return 0
 
-    found = {"warm_walls": warm_walls, "smooth_walls": smooth_walls}
-    return found | ({"cover_pool": cover_pool} if modes.pool else {})
+    found = {"lead": lead} if modes.ascends else {}
+    found |= {"set_gravity": gravity_setter(modes)} if can_set_gravity(modes) and not wells else {}
+    if modes.drops or (modes.phases and modes.ascends and not modes.pool):  # visible drops, or a cloud that rises
+        return found
+    found |= {"cover_pool": cover_pool} if modes.pool else {}
+    return found | {"warm_walls": warm_walls} | ({"smooth_walls": smooth_walls} if modes.phases else {})
+
+
+@kernel
+def lead(gas, ascent, book, towards):
+    """Move the parcel to another moment of its planned ascent, at its pace, and stop there: see `Course.lead`."""
+    time, lift = gas.walls.epoch[0] + book.now[0], ascent.lift
+    here = interpolate(time, lift.course_time, lift.course_moment)
+    times, moments = lift.course_time, lift.course_moment
+    times[0], moments[0] = 0.0, here
+    times[1], moments[1] = time, here
+    times[2], moments[2] = time + abs(towards - here), towards
+    times[3], moments[3] = math.inf, towards
+    return 0
 
 
 def can_set_gravity(modes: Modes) -> bool:

@@ -10,7 +10,7 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.engine.liquid.reservoir import LIQUID, RAINED
-from atmosbox.lab.kernels.in_gas import is_away
+from atmosbox.lab.kernels.sums import ceiling, is_away
 
 _FINEST, _FASTEST = 65535, 255
 
@@ -61,10 +61,9 @@ def picture(modes: Modes) -> Callable[..., Any]:
     def look(gas, book, picture):
         """Write the positions and the colours, by speed, of all molecules that are shown."""
         now, box = book.now[0], gas.box
-        piston = gas.walls.piston
         picture.length[0] = box.length_x
         picture.length[1] = box.length_y
-        picture.length[2] = piston[0] + piston[1] * (now - piston[2])
+        picture.length[2] = ceiling(gas, now)
         for k in range(picture.shown.size):
             picture.state[k] = 0
             if is_away(picture.shown[k], gas, modes):
@@ -78,7 +77,8 @@ def picture(modes: Modes) -> Callable[..., Any]:
             picture.place[k, 2] = int(share(at.z, picture.length[2], box.inverse_z))
             speed = math.sqrt(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
             picture.colour[k] = math.floor(min(speed / picture.highest, 1.0) * _FASTEST + 0.5)
-        look_at_liquid(gas, book, picture)
+        if modes.phases:
+            look_at_liquid(gas, book, picture)
         return 0
 
     return look  # type: ignore[no-any-return]
@@ -87,13 +87,6 @@ def picture(modes: Modes) -> Callable[..., Any]:
 @functools.cache
 def _liquid(modes: Modes) -> Callable[..., Any]:
     """Return the kernel of one set of modes that writes which drops are drawn."""
-    if not modes.phases:
-
-        @kernel
-        def look_at_nothing(gas, book, picture):
-            """Do nothing: there is no liquid."""
-
-        return look_at_nothing  # type: ignore[no-any-return]
 
     @kernel
     def draw_layer(number, what, picture):

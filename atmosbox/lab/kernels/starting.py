@@ -16,6 +16,7 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.advance import dry_loop
 from atmosbox.engine.exact.layout import write_column
 from atmosbox.engine.exact.rows import LONGEST
 from atmosbox.engine.liquid.moist_loop import moist_loop
@@ -23,10 +24,12 @@ from atmosbox.engine.start.overlap import clear
 from atmosbox.engine.start.scatter import SERIES, crowd, scatter
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
+DRAWN = ("position", "velocity", "rotational_energy")
+"""The parts of a start that are drawn; `PLACES`, `VELOCITIES`, `SPINS` are their numbers."""
 PLACES, VELOCITIES, SPINS = range(3)
-"""The parts of a start that are drawn: positions, velocities, rotational energies."""
-AS_PLACED, AT_RANDOM, ALONG_X = range(3)
-"""How molecules are numbered after they have been placed: see `Scattered`."""
+NUMBERED = ("as placed", "at random", "along x")
+"""How molecules are numbered after they have been placed, see `Scattered`; `AT_RANDOM`, `ALONG_X` are numbers of it."""
+_, AT_RANDOM, ALONG_X = range(3)
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
@@ -45,11 +48,11 @@ class Cleared(NamedTuple):
 class Start(NamedTuple):
     """The data with which the molecules of a box are drawn and placed.
 
-    ``parts : (part,)`` says what is drawn, in order: `PLACES`, `VELOCITIES`, `SPINS`; ``numbered`` is one of
-    `AS_PLACED`, `AT_RANDOM`, `ALONG_X`; ``scale_height`` that of the air as it is placed [length], 0 if it is spread
-    evenly; ``planar`` 1 in a plane gas, else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds
-    differ. ``twice`` is twice the kinetic energy of all molecules [energy], ``weight`` their mass, and ``rotating``
-    their rotational energy [energy]; ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of
+    ``parts : (part,)`` are the numbers of what is drawn, in order, and ``numbered`` is one of those in `NUMBERED`;
+    ``scale_height`` is that of the air as it is placed [length], 0 if it is spread evenly; ``planar`` 1 in a plane gas,
+    else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds differ. ``twice`` is twice the kinetic
+    energy of all molecules [energy], ``weight`` their mass, and ``rotating`` their rotational energy [energy];
+    ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of
     rotation [energy], ``condensed`` the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the
     warmest wall [length/time], in a box with liquid.
 
@@ -58,7 +61,7 @@ class Start(NamedTuple):
     of freedom. ``spread : (2,)`` is the spacing of molecules [length], and the fastest speed of the walls and of a fall
     over that spacing [length/time]. ``at`` has the data of the gas that the law of the piston needs, without the
     energy, ``layout`` the cells of a column, and ``cleared`` the drops that molecules make room for; each is 0 in a box
-    without. ``velocity : (molecule, axis)``, ``key : (3 molecule,)``, ``rank`` and ``other : (molecule,)``,
+    without. ``velocity : (molecule, axis)``, ``key : (3 molecule + 1,)``, ``rank`` and ``other : (molecule,)``,
     ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
     """
 
@@ -144,14 +147,14 @@ def _place(start):
 @kernel
 def _number(start):
     """Assign a number to each molecule."""
-    key, rank = start.key, start.rank
-    for i in range(rank.size):
-        rank[i] = i
-    if start.numbered == AS_PLACED:
-        return
-    for i in range(rank.size):
-        key[i] = uniform(start.state) if start.numbered == AT_RANDOM else start.spheres.x[i, 0]
-    _sort(key, rank, start.other)
+    key = start.key
+    for i in range(start.rank.size):
+        key[i] = i
+        if start.numbered == AT_RANDOM:
+            key[i] = uniform(start.state)
+        elif start.numbered == ALONG_X:
+            key[i] = start.spheres.x[i, 0]
+    _sort(key, start.rank, start.other)
 
 
 @kernel
@@ -163,21 +166,16 @@ def _sum(number, start):
 @kernel
 def _move(start):
     """Draw the velocities of all molecules."""
-    state, v, factor = start.state, start.velocity, start.factor
-    number = 3 * v.shape[0]
-    for k in range(0, number, 2):
-        one, two = gaussian_pair(state)
-        v[k // 3, k % 3] = one
-        if k + 1 < number:
-            v[(k + 1) // 3, (k + 1) % 3] = two
+    v, key, factor = start.velocity, start.key, start.factor
+    for k in range(0, 3 * v.shape[0], 2):
+        key[k], key[k + 1] = gaussian_pair(start.state)
     for i in range(v.shape[0]):
-        if start.planar != 0:
-            v[i, 1] = 0.0
-        size = 0.0
-        if start.speed > 0.0:
-            size = math.sqrt(v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
+        square = 0.0
         for axis in range(3):
-            v[i, axis] = start.speed * v[i, axis] / size if start.speed > 0.0 else v[i, axis] * factor[i]
+            v[i, axis] = 0.0 if axis == 1 and start.planar != 0 else key[3 * i + axis]
+            square += v[i, axis] * v[i, axis]
+        for axis in range(3):
+            v[i, axis] = start.speed * v[i, axis] / math.sqrt(square) if start.speed > 0.0 else v[i, axis] * factor[i]
     if start.twice > 0.0:
         _be_at_rest(start)
 
@@ -185,29 +183,21 @@ def _move(start):
 @kernel
 def _be_at_rest(start):
     """Remove the mean motion from the velocities, and scale them to the prescribed energy."""
-    v, mass, key = start.velocity, start.mass, start.key
-    px = py = pz = 0.0
-    for i in range(mass.size):
-        px += mass[i] * v[i, 0]
-        py += mass[i] * v[i, 1]
-        pz += mass[i] * v[i, 2]
-    px, py, pz = px / start.weight, py / start.weight, pz / start.weight
-    for i in range(mass.size):
-        v[i, 0] -= px
-        v[i, 1] -= py
-        v[i, 2] -= pz
-        for axis in range(3):
-            key[3 * i + axis] = mass[i] * v[i, axis] * v[i, axis]
-    factor = math.sqrt(start.twice / _sum(3 * mass.size, start))
-    for i in range(mass.size):
-        for axis in range(3):
-            v[i, axis] *= factor
+    v, mass = start.velocity, start.mass
+    for axis in range(3):
+        momentum = 0.0
+        for i in range(mass.size):
+            momentum += mass[i] * v[i, axis]
+        for i in range(mass.size):
+            v[i, axis] -= momentum / start.weight
+            start.key[3 * i + axis] = mass[i] * v[i, axis] * v[i, axis]
+    v *= math.sqrt(start.twice / _sum(3 * mass.size, start))
 
 
 @kernel
 def _turn(start, energy):
     """Draw the rotational energies of all molecules of the gas: see `rotational_energies`."""
-    degrees, state, key = start.degrees, start.state, start.key
+    degrees, state = start.degrees, start.state
     for i in range(degrees.size):
         drawn = -log_of_normal(uniform(state))
         energy[i] = drawn if degrees[i] >= 2.0 else 0.0
@@ -220,37 +210,27 @@ def _turn(start, energy):
             spare = not spare
             energy[i] += 0.5 * deviate * deviate
         energy[i] *= start.warmth
-        key[i] = energy[i]
     if start.rotating > 0.0:
-        factor = start.rotating / _sum(degrees.size, start)
-        for i in range(degrees.size):
-            energy[i] *= factor
+        energy *= start.rotating / _rotational_energy(start, energy)
 
 
 @kernel
 def _rotational_energy(start, energy):
     """Return the sum of the rotational energies of all molecules of the gas."""
-    for i in range(start.degrees.size):
+    for i in range(energy.size):
         start.key[i] = energy[i]
-    return _sum(start.degrees.size, start)
+    return _sum(energy.size, start)
 
 
 @kernel
 def _kinetic_energy(start):
-    """Return the kinetic energy of all molecules: see `Account.energy`."""
-    v = start.velocity
+    """Return the kinetic energy of all molecules, see `Account.energy`, and the highest of their speeds."""
+    v, highest = start.velocity, 0.0
     for i in range(v.shape[0]):
-        start.key[i] = start.mass[i] * (v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
-    return 0.5 * _sum(v.shape[0], start)
-
-
-@kernel
-def _fastest(start):
-    """Return the speed of the fastest molecule [length/time]."""
-    v, square = start.velocity, 0.0
-    for i in range(v.shape[0]):
-        square = max(square, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
-    return math.sqrt(square)
+        square = v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2]
+        highest = max(highest, square)
+        start.key[i] = start.mass[i] * square
+    return 0.5 * _sum(v.shape[0], start), math.sqrt(highest)
 
 
 @kernel
@@ -276,67 +256,33 @@ def _write_epoch(start, book):
 @functools.cache
 def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
     """Return the kernel ``start`` for a set of modes; ``wells`` if molecules attract each other."""
+    _, _, wake = (moist_loop if modes.phases else dry_loop)(modes)
 
     @kernel
-    def prepare_cells(kinetic, gas, book, begun):
-        """Set how long copies in cells are valid, and choose layers of cells; return whether that was possible."""
-        if wells:
-            gas.bath.clock[0] = math.inf  # `place` draws it
-            return True
-        gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
-        if modes.gravity and modes.rows:
-            dimensions = 2.0 if begun.planar != 0 else 3.0
-            return write_column(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.layout, modes)
-        return True
-
-    if modes.ascends:
-
-        @kernel
-        def begin_ascent(gas, ascent, book, begun):
-            """Give the piston its first velocity."""
-            a, energy = begun.at, book.energy[0] - begun.condensed
-            at = Gauges(a.time, a.number, a.freedom, a.dimensions, energy, a.virial, a.density, a.open_height)
-            gas.walls.piston[1] = ceiling_velocity(at, ascent.lift)
-
-    else:
-
-        @kernel
-        def begin_ascent(gas, ascent, book, begun):
-            """Do nothing: no piston rises."""
-
-    if modes.phases:
-        _, _, wake = moist_loop(modes)
-
-        @kernel
-        def begin_liquid(gas, ascent, book, begun):
-            """Give the piston its first velocity, and draw the first event of the liquid."""
-            begin_ascent(gas, ascent, book, begun)
-            book.moisture.reservoir.bound[0] = 0.0
-            # in a loop, so that it is compiled once: for the molecules, and again for a piston that may be faster
-            for speed in (max(_fastest(begun), begun.warm), 2.0 * abs(gas.walls.piston[1])):
-                wake(gas, book, speed)
-
-    else:
-        begin_liquid = begin_ascent
-
-    @kernel
-    def start(gas, ascent, book, begun, seed):
-        """Give all molecules the positions and velocities of a seed; return whether that was possible."""
-        word, state = np.uint64(seed), begun.state
-        state[0] = _first_state(word, _FIRST_OF_START)
+    def draw(gas, begun):
+        """Draw positions, velocities and rotational energies in their order; return whether there is room."""
         for part in begun.parts:
             if part == PLACES:
                 if not _place(begun):
-                    return 1
+                    return False
                 if modes.drops > 0:
-                    clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, state)
+                    clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, begun.state)
                 _number(begun)
             elif part == VELOCITIES:
                 _move(begun)
             elif modes.rotation:
-                _turn(begun, gas.kinds.rotational_energy)
+                _turn(begun, gas.kinds.rotational_energy[: begun.degrees.size])
             else:  # molecules without rotation: their numbers are drawn, too
-                state[0] += _STEP * np.uint64(begun.degrees.size)
+                begun.state[0] += _STEP * np.uint64(begun.degrees.size)
+        return True
+
+    @kernel
+    def start(gas, ascent, book, begun, seed):
+        """Give all molecules the positions and velocities of a seed; return whether that was possible."""
+        word = np.uint64(seed)
+        begun.state[0] = _first_state(word, _FIRST_OF_START)
+        if not draw(gas, begun):
+            return 1
         for i in range(begun.rank.size):
             molecule, k = gas.molecules[i], begun.rank[i]
             molecule.x = begun.spheres.x[k, 0]
@@ -347,11 +293,27 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             molecule.vz = begun.velocity[i, 2]
         gas.tallies.random[0] = _first_state(word, _FIRST_OF_RUN)
         _write_epoch(begun, book)
-        kinetic = _kinetic_energy(begun)
-        rotational = _rotational_energy(begun, gas.kinds.rotational_energy) if modes.rotation else 0.0
-        book.energy[0] = kinetic + rotational + begun.condensed
-        begin_liquid(gas, ascent, book, begun)
-        return 0 if prepare_cells(kinetic, gas, book, begun) else 1
+        kinetic, fastest = _kinetic_energy(begun)
+        energy = kinetic
+        if modes.rotation:
+            energy += _rotational_energy(begun, gas.kinds.rotational_energy[: begun.degrees.size])
+        book.energy[0] = energy + begun.condensed
+        if modes.ascends:  # the first velocity of the piston
+            a, energy = begun.at, book.energy[0] - begun.condensed
+            at = Gauges(a.time, a.number, a.freedom, a.dimensions, energy, a.virial, a.density, a.open_height)
+            gas.walls.piston[1] = ceiling_velocity(at, ascent.lift)
+        if modes.phases:  # the first event of the liquid
+            book.moisture.reservoir.bound[0] = 0.0
+            # in a loop, so that it is compiled once: for the molecules, and again for a piston that may be faster
+            for speed in (max(fastest, begun.warm), 2.0 * abs(gas.walls.piston[1])):
+                wake(gas, book, speed)
+        if wells:
+            gas.bath.clock[0] = math.inf  # `place` draws it
+            return 0
+        gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
+        if modes.gravity and modes.rows:
+            kT = 2.0 * kinetic / ((2.0 if begun.planar != 0 else 3.0) * gas.molecules.size)
+            return 0 if write_column(kT, gas, begun.layout, modes) else 1
+        return 0
 
-    made: Callable[..., Any] = start
-    return made
+    return start  # type: ignore[no-any-return]

@@ -51,7 +51,7 @@ class Box {
     const { machine } = this;
     machine.restore();
     if (this.plan.seeded) {
-      machine.set("start", "4", BigInt(this.seed));
+      machine.set("start", "seed", BigInt(this.seed));
       if (machine.call("start") !== DONE) throw new Error("the molecules find no room");
     }
     if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
@@ -81,7 +81,7 @@ class Box {
     const rate = pictures.length > 2 ? (pictures.length - 1) / (pictures.at(-1) - pictures[0]) * 1000 : 0;
     return { type: "state", playing: this.playing, pace: this.pace, time: this.now * this.plan.time,
       frame: this.frame, seed: this.seed, seeded: this.plan.seeded, finished: this.finished, ledger: reading[this.plan.ledger],
-      molecules: this.plan.present === null ? this.plan.molecules : reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
+      molecules: reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
       undo: this.past.length > 0 };
   }
 
@@ -120,8 +120,8 @@ class Box {
       if (!this.inside) this.turnKnobs();
       if (this.failed) return;
       const due = this.moment(), until = Math.min(goal, due);
-      machine.set("pass_time", "4", until);
-      machine.set("pass_time", "5", BigInt(EVENTS));
+      machine.set("pass_time", "until", until);
+      machine.set("pass_time", "most", BigInt(EVENTS));
       const passed = machine.call("pass_time");
       if (passed === BUSY) {
         if (performance.now() > deadline) return;
@@ -193,7 +193,7 @@ class Box {
     const wanted = scale.swift * Math.sqrt(Math.max(...kelvin)), power = 10 ** Math.floor(Math.log10(wanted));
     if (!(wanted > this.fastest || wanted < scale.colder * this.fastest)) return;
     this.fastest = Number((scale.round.find((step) => step * power >= wanted) * power).toPrecision(6));
-    machine.set("look", "2.highest", this.fastest / scale.unit);
+    machine.set("look", "picture.highest", this.fastest / scale.unit);
   }
 
   // Send a frame: see atmosbox/page/frame.py.

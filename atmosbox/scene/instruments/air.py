@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.engine.core.account import GIVEN, STORES
 from atmosbox.engine.core.measure import temperature
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, series
 from atmosbox.scene.units import Scale
 
 Array = NDArray[np.float64]
@@ -97,12 +97,10 @@ class Air:
             "gravity": scale.acceleration,
             "wall_temperature": scale.temperature,
         }
-        if not self._rows:
-            return Readings()
-        columns = {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
+        found = series(self._rows, units)
         for name in {*STORES, *GIVEN} - _ALWAYS:
-            if not columns[name].any():
-                del columns[name]
-        if "work_by_gravity" not in columns:  # gravity changes during the run in few boxes only
-            del columns["gravity"]
-        return Readings(columns)
+            if name in found and not found[name].any():
+                del found[name]
+        if "work_by_gravity" not in found:  # gravity changes during the run in few boxes only
+            found.pop("gravity", None)
+        return found

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.engine.core.measure import temperature
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, series
 from atmosbox.scene.units import Scale
 
 CROWDED = 5
@@ -110,9 +110,5 @@ class Clusters:
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series; see `Instrument`."""
-        if not self._rows:
-            return Readings()
         energies = ("attraction_energy", "molecular_energy")
-        units = dict.fromkeys(energies, scale.total_energy) | {"virial_pressure": scale.pressure}
-        columns = {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
-        return Readings({name: values * units.get(name, 1.0) for name, values in columns.items()})
+        return series(self._rows, dict.fromkeys(energies, scale.total_energy) | {"virial_pressure": scale.pressure})

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox import theory as law
 from atmosbox.engine import Snapshot
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, series
 from atmosbox.scene.instruments.water import gas_kT, vapour_pressure
 from atmosbox.scene.units import Scale
 
@@ -24,7 +24,7 @@ class DropSizes:
 
     def __init__(self) -> None:
         self._area: list[float] = []
-        self._rows: list[tuple[float, float, float]] = []
+        self._rows: list[dict[str, float]] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Sum the areas of the drops."""
@@ -34,19 +34,13 @@ class DropSizes:
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Count the drops."""
         radius = parcel.drops()[1]
-        self._rows.append((float(np.mean(self._area)), float(radius.max()), float(len(radius))))
+        area = float(np.mean(self._area))
+        self._rows.append({"drop_area": area, "largest_drop_radius": float(radius.max()), "drop_count": len(radius)})
         self._area = []
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series; see `Instrument`."""
-        if not self._rows:
-            return Readings()
-        area, largest, count = np.array(self._rows).T
-        return Readings(
-            drop_area=area * scale.length**2,
-            largest_drop_radius=largest * scale.length,
-            drop_count=count.astype(np.int64),
-        )
+        return series(self._rows, {"drop_area": scale.length**2, "largest_drop_radius": scale.length})
 
 
 class Nuclei:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine import Parcel, Snapshot
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, series
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
@@ -146,7 +146,7 @@ class Flow:
             "core_lapse_rate": scale.temperature / scale.length,
         }
         found = Readings(
-            {name: np.array([row[name] for row in self._rows]) * units.get(name, 1.0) for name in self._rows[0]},
+            series(self._rows, units),
             mode=_half_waves(periodic=self._periodic),
             distance=0.5 * (edges[1:] + edges[:-1]),
             distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
+
+import numpy as np
 
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.scene.units import Scale
@@ -10,6 +13,20 @@ from atmosbox.scene.units import Scale
 
 class Readings(dict[str, Any]):
     """Variables and coordinates by name, in SI units."""
+
+
+def series(rows: Sequence[Mapping[str, Any]], units: Mapping[str, float]) -> Readings:
+    """Return what was read at the end of each frame as series, each in its SI unit; nothing without a frame.
+
+    Parameters
+    ----------
+    rows
+        The values of each frame by name, in the engine's units.
+    units
+        What these units are in SI, by name of the variable; 1 for a variable that is not named.
+    """
+    names = rows[0] if rows else ()
+    return Readings({name: np.array([row[name] for row in rows]) * units.get(name, 1) for name in names})
 
 
 class Instrument(Protocol):
