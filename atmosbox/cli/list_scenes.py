@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Json, Verbose
+from atmosbox.cli.option import Json, switch
 from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.text.report import scene_lines
 
 
 @command("atmosbox list", "atmosbox list --names", "atmosbox list --json", name="list")
 def list_scenes(
-    names: Annotated[bool, typer.Option("--names", help="Print the names alone, one in a line.")] = False,
+    names: Annotated[bool, switch("--names", "Print the names alone, one in a line.")] = False,
     as_json: Json = False,
-    verbose: Verbose = False,
 ) -> None:
     """List the scenes that come with atmosbox, in the order of teaching."""
     from atmosbox import scenarios

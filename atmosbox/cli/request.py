@@ -10,9 +10,10 @@ import os
 import re
 import shlex
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from atmosbox.cli.option import Sought, is_path
 from atmosbox.cli.terminal import prints_to_stderr, tell
 from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError, shown
 from atmosbox.scene.settings import Value
@@ -130,42 +131,31 @@ def _toml(raw: bytes, where: str) -> dict[str, Any]:
 WARM = 100.0  # degC: above it, a number without a unit may have been meant in kelvin
 
 
-def gather(
-    scene: str | None,
-    values: Sequence[str] = (),
-    config: str | None = None,
-    source: str | None = None,
-    seed: str | None = None,
-    save_molecules: bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-) -> Asked:
+def gather(sought: Sought, save_molecules: bool | None = None) -> Asked:
     """Return the request for a run that the whole command line makes; its settings are not yet checked.
 
     If a setting has two values, the later in this list counts: ``--from``, ``--config``, ``--set``, ``--seed``. The
-    scene is None if one of the files names it.
+    scene may be named by one of the files.
 
     Examples
     --------
-    >>> gather("lifting-dry", ["temperature=25degC"], seed="7").settings
+    >>> gather(Sought("lifting-dry", ["temperature=25degC"], seed="7")).settings
     {'temperature': '25degC', 'seed': '7'}
     """
-    scene = scene or ""
+    scene, accuracy, source, of_file = sought.scene or "", sought.accuracy, sought.source, None
     settings: dict[str, Any] = {}
-    of_file: str | None = None
     if source is not None:
         run = _earlier(source)
         scene = _agreed(scene, run.scene, "--from", source, FileError)
         settings, of_file = run.settings, run.engine
         save_molecules = run.save_molecules if save_molecules is None else save_molecules
-    if config is not None:
-        asked = load_config(config)
-        scene = _agreed(scene, asked.scene, "--config", config, ConfigError)
+    if sought.config is not None:
+        asked = load_config(sought.config)
+        scene = _agreed(scene, asked.scene, "--config", sought.config, ConfigError)
         settings, of_file = _over(settings, asked.settings), asked.engine or of_file
         accuracy = accuracy or asked.accuracy
-    settings = _over(settings, assignments(values))
-    if seed is not None:
-        settings = _over(settings, {"seed": seed})
+    settings = _over(settings, assignments(sought.values or ()))
+    settings = _over(settings, {} if sought.seed is None else {"seed": sought.seed})
     if not scene:
         raise UnknownSceneError(
             "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
@@ -173,7 +163,7 @@ def gather(
     if accuracy is not None and source is not None:
         problem = f"picks engine and settings, and so does --from {shlex.quote(source)}"
         raise SettingError("accuracy", accuracy, problem, "leave one of them out")
-    return Asked(scene, settings, engine or of_file, save_molecules, accuracy)
+    return Asked(scene, settings, sought.engine or of_file, save_molecules, accuracy)
 
 
 def checked(asked: Asked) -> Prepared:
@@ -203,11 +193,6 @@ def with_fewer_molecules(asked: Asked) -> Asked:
     told = " and ".join(f"{name}={value}" for name, value in few.items())
     tell(f"note: the page begins with {told}, fewer than a run has; give --set molecules=N for more")
     return asked._replace(settings={**asked.settings, **few}).for_a_page()
-
-
-def is_path(scene: str) -> bool:
-    """Return whether a scene is given by the path of its file rather than by its name."""
-    return scene.endswith(".py") or "/" in scene or os.sep in scene
 
 
 def _earlier(path: str) -> Asked:

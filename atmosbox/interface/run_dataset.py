@@ -52,7 +52,7 @@ def _results(dataset: xr.Dataset) -> list[str]:
     """Return the lines that are shown above the variables of a run; none if the dataset is not a single run."""
     from atmosbox.errors import AtmosboxError
     from atmosbox.file.provenance import parameters
-    from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of
+    from atmosbox.simulation.verification import headlines_of
     from atmosbox.text.report import headline_lines, ledger_line
 
     if "atmosbox_headlines" not in dataset.attrs or {"member", "rung"} & set(dataset.dims):
@@ -69,7 +69,7 @@ def _results(dataset: xr.Dataset) -> list[str]:
     status = str(dataset.attrs.get("atmosbox_status", "complete"))
     notes = [] if status == "complete" else [f"the run is {status}"]
     if dataset.sizes.get("elapsed_time", 0) and "ledger_residual" in dataset:
-        notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values)), LEDGER_LIMIT))
+        notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values))))
     return [head, "", *headline_lines(headlines, _WIDTH), "", *notes, ""]
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming
     from atmosbox.scene.headline import Headline
     from atmosbox.scene.settings import Parameter
-    from atmosbox.simulation.runner import Card, Outcome
+    from atmosbox.simulation.runner import Card, Outcome, Prepared
 
 
 def next_command(command: str, path: Path) -> str:
@@ -154,28 +154,19 @@ def _too_small(headline: Headline) -> str:
     )
 
 
-def ledger_line(ledger: float, limit: float) -> str:
+def ledger_line(ledger: float) -> str:
     """Return a line that says whether the energy budget is closed.
 
     Examples
     --------
-    >>> ledger_line(3.2e-15, 1e-10), ledger_line(4e-6, 1e-10)
+    >>> ledger_line(3.2e-15), ledger_line(4e-6)
     ('energy budget: closed to 3e-15', 'energy budget: not closed, 4e-06 is missing, where at most 1e-10 may be')
     """
-    if ledger <= limit:
+    from atmosbox.simulation.verification import LEDGER_LIMIT
+
+    if ledger <= LEDGER_LIMIT:
         return f"energy budget: closed to {ledger:.0e}"
-    return f"energy budget: not closed, {ledger:.0e} is missing, where at most {limit:.0e} may be"
-
-
-def made_line(made: float) -> str:
-    """Return a line that says how much energy the scheme of an approximate engine has made by itself.
-
-    Examples
-    --------
-    >>> made_line(0.0312)
-    'the scheme itself has made +3.1 % of the energy of motion'
-    """
-    return f"the scheme itself has made {100.0 * made:+.2g} % of the energy of motion"
+    return f"energy budget: not closed, {ledger:.0e} is missing, where at most {LEDGER_LIMIT:.0e} may be"
 
 
 def cost_line(collisions: int, seconds: float) -> str:
@@ -186,37 +177,39 @@ def cost_line(collisions: int, seconds: float) -> str:
     >>> cost_line(1234567, 2.0)
     '1,234,567 collisions in 2.0 s, 620,000 a second'
     """
-    taken = f"{seconds:#.2g}" if seconds < 10.0 else f"{seconds:.0f}"
-    return f"{collisions:,} collisions in {taken} s" + (
-        f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
-    )
+    rate = f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
+    return f"{collisions:,} collisions in {seconds:{'#.2g' if seconds < 10.0 else '.0f'}} s{rate}"
 
 
-def outcome_json(outcome: Outcome, *, scene: str, path: Path, limit: float) -> dict[str, Any]:
+def outcome_json(outcome: Outcome, prepared: Prepared, path: Path) -> dict[str, Any]:
     """Return a run as a record for JSON."""
-    rate = outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None
+    from atmosbox.simulation.verification import LEDGER_LIMIT
+
+    closes = bool(outcome.ledger <= LEDGER_LIMIT)
     return {
-        "scene": scene,
+        "scene": prepared.scene,
         "status": str(outcome.dataset.attrs.get("atmosbox_status", "complete")),
         "file": str(path),
         "headlines": [headline_json(headline) for headline in outcome.headlines],
-        "ledger": {"residual": outcome.ledger, "limit": limit, "closes": bool(outcome.ledger <= limit)},
+        "ledger": {"residual": outcome.ledger, "limit": LEDGER_LIMIT, "closes": closes},
         "energy_made_by_the_scheme": outcome.made,
         "collisions": outcome.collisions,
         "seconds": outcome.seconds,
-        "collisions_per_second": rate,
+        "collisions_per_second": outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None,
         "next": next_command("plot", path),
+        "settings": prepared.settings.as_dict(),
     }
 
 
-def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int, expected: Sequence[str] = ()) -> list[str]:
+def outcome_lines(outcome: Outcome, path: Path, width: int, expected: Sequence[str] = ()) -> list[str]:
     """Return a run as text, with the lines about its expected errors."""
+    made = f"the scheme itself has made {100.0 * outcome.made:+.2g} % of the energy of motion"
     return [
         *headline_lines(outcome.headlines, width),
         "",
         *([*expected, ""] if expected else []),
-        ledger_line(outcome.ledger, limit),
-        *([made_line(outcome.made)] if outcome.made else []),
+        ledger_line(outcome.ledger),
+        *([made] if outcome.made else []),
         cost_line(outcome.collisions, outcome.seconds),
         f"file: {path}",
         f"next: {next_command('plot', path)}",
