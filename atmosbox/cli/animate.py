@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -49,8 +49,6 @@ def animate(
     from atmosbox.film import save
 
     with progress(Path(file).name, quiet=to.quiet) as show:
-        path, _ = save(
-            dataset, path, format, theme=theme, seconds=seconds, fps=fps, graphs=graphs, force=to.force,
-            progress=lambda done: show(done, "running"),
-        )  # fmt: skip
+        wanted: dict[str, Any] = {"theme": theme, "seconds": seconds, "fps": fps, "graphs": graphs, "force": to.force}
+        path, _ = save(dataset, path, format, **wanted, progress=lambda done: show(done, "running"))
     say(str(path))

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.simulation.accuracy import TARGETS, cost, said
+from atmosbox.scene.target import TARGETS
+from atmosbox.simulation.accuracy import cost, said
 from atmosbox.text.table import table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline
-    from atmosbox.simulation.accuracy import Expectation, ExpectedError, Target
+    from atmosbox.scene.target import Target
+    from atmosbox.simulation.accuracy import Expectation, ExpectedError
 
 
 def expectation_lines(

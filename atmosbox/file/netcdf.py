@@ -154,10 +154,8 @@ def read(path: AnyPath) -> xr.Dataset:
                 raise FileError(f"{source} was written by another program: {fix}.")
             written = str(attributes.get("atmosbox_format", FORMAT))
             if written != str(FORMAT):
-                raise FileError(
-                    f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}: "
-                    "type pip install --upgrade atmosbox."
-                )
+                problem = f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}"
+                raise FileError(f"{problem}: type pip install --upgrade atmosbox.")
             check_valid(file, source)
         return xr.load_dataset(source, engine="netcdf4", decode_times=False, drop_variables=[STATE])
     except FileError:

@@ -25,9 +25,7 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the temporary name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
 _NUMBERS = itertools.count()
-LEFT_OVER = (
-    3600.0  # seconds after which a temporary file of another computer is taken as left by a program that was killed
-)
+LEFT_OVER = 3600.0  # seconds after which a temporary file of another computer counts as left by a killed program
 
 
 def named(

@@ -122,6 +122,7 @@ def execute(
     >>> outcome.ledger < LEDGER_LIMIT
     True
     """
+    tell = progress or (lambda share, word: None)
     if restart is not None:
         check_alike(restart, prepared)
     with contextlib.ExitStack() as stack:
@@ -129,45 +130,40 @@ def execute(
             with uninterrupted():
                 checkpoint.load_libraries()
             stack.callback(checkpoint.begin().release)
-        return _execute(prepared, checkpoint, progress or (lambda share, word: None), command, restart, strict)
+        with told(prepared, tell):
+            setup = build(prepared)
+            setup.parcel.advance(0.0)
+        for sentence in setup.doubts:
+            if strict:
+                raise SoundingError(sentence[:-1], "correct it, or leave ", Option("strict"), " out")
+            if restart is None:
+                warnings.warn(sentence, stacklevel=2)
+        if prepared.replay is not None:
+            prepared.replay.check(setup)
+        frames = prepared.frames(setup)
+        recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
+        if restart is not None:
+            put_back(restart, recording)
+            if recording.frames >= frames:
+                raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
+        done = _recorded(recording, frames, checkpoint, tell)
+    if prepared.replay is None:
+        remember_pace(prepared, done.engine_seconds)
+    return done
 
 
-def _execute(
-    prepared: Prepared,
-    checkpoint: Checkpoint | None,
-    tell: Progress,
-    command: str,
-    restart: Restart | None,
-    strict: bool,
-) -> Outcome:
-    """Run a prepared scenario after its output path has been reserved."""
-    with told(prepared, tell):
-        setup = build(prepared)
-        setup.parcel.advance(0.0)
-    for sentence in setup.doubts:
-        if strict:
-            raise SoundingError(sentence[:-1], "correct it, or leave ", Option("strict"), " out")
-        if restart is None:
-            warnings.warn(sentence, stacklevel=3)
-    if prepared.replay is not None:
-        prepared.replay.check(setup)
-    frames = prepared.frames(setup)
-    recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
-    last = 0.0
-    if restart is not None:
-        put_back(restart, recording)
-        if recording.frames >= frames:
-            raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
+def _recorded(recording: Recording, frames: int, checkpoint: Checkpoint | None, tell: Progress) -> Outcome:
+    """Record all frames of a run, or those before it is stopped, and save them."""
+    parcel, last = recording.setup.parcel, 0.0
 
     def watch(now: float) -> None:
         nonlocal last
         if time.perf_counter() - last > _BREATH:
             last = time.perf_counter()
-            tell(min(now / (frames * setup.frame), 1.0), "running")
+            tell(min(now / (frames * recording.setup.frame), 1.0), "running")
 
     def outcome(status: str) -> Outcome:
         dataset, headlines = recording.dataset(status)
-        parcel = setup.parcel
         made = parcel.numerical_heat / (sum(parcel.energy()[:2]) or 1.0)
         cost = (recording.seconds, parcel.contacts, parcel.ledger(), recording.busy)
         return Outcome(dataset, headlines, *cost, made, parcel.escaped())
@@ -175,13 +171,13 @@ def _execute(
     try:
         while recording.frames < frames:
             recording.advance(watch)
-            watch(setup.parcel.time)
+            watch(parcel.time)
             if checkpoint is not None and recording.frames < frames:
                 checkpoint(lambda: with_state(recording.dataset("partial")[0], recording))
         tell(1.0, "done")
         done = outcome("complete")
     except (StalledError, RefusedError) as error:
-        raise EngineError(f"The run of {prepared.scene} cannot go on: {error}.") from error
+        raise EngineError(f"The run of {recording.prepared.scene} cannot go on: {error}.") from error
     except KeyboardInterrupt as stop:
         partial = outcome("interrupted") if recording.frames else None
         if partial is not None and checkpoint is not None:
@@ -191,8 +187,6 @@ def _execute(
     if checkpoint is not None:
         with uninterrupted():
             checkpoint.finish(done.dataset)
-    if prepared.replay is None:
-        remember_pace(prepared, done.engine_seconds)
     return done
 
 
