@@ -81,9 +81,5 @@ def conventions(path: Path) -> Conventions:
 def _messages(report: dict[str, Any]) -> list[str]:
     """Return the messages of the compliance-checker about what is wrong."""
     parts = [entry for rank in ("high", "medium", "low") for entry in report[f"{rank}_priorities"]]
-    return [
-        f"{part['name']}: {message}"
-        for part in parts
-        if part["value"][0] < part["value"][1]
-        for message in part["msgs"] or ["not kept"]
-    ]
+    wrong = [part for part in parts if part["value"][0] < part["value"][1]]
+    return [f"{part['name']}: {message}" for part in wrong for message in part["msgs"] or ["not kept"]]

@@ -73,31 +73,22 @@ def compare(
 
 def as_record(files: Sequence[str], names: Naming, numbers: Sequence[Compared]) -> dict[str, Any]:
     """Return the comparison as a record for JSON."""
-    return {
-        "same": names.same,
-        "changes": {change.name: list(change.values) for change in names.changes},
-        "runs": [
-            {"file": file, "label": label, "scene": scene}
-            for file, label, scene in zip(files, names.labels, names.scenes, strict=True)
-        ],
-        "headlines": [
+    named = zip(files, names.labels, names.scenes, strict=True)
+    runs = [{"file": file, "label": label, "scene": scene} for file, label, scene in named]
+    headlines = []
+    for each in numbers:
+        measured = [
             {
-                "name": each.name,
-                "label": each.label,
-                "unit": each.unit,
-                "runs": [
-                    {
-                        "value": run.value,
-                        "standard_error": run.error,
-                        "theory": run.theory,
-                        "difference": each.difference(k),
-                        "difference_standard_error": each.error(k) if k else math.nan,
-                        "sigma": each.sigma(k) if k else math.nan,
-                        "difference_by_theory": each.expected(k),
-                    }
-                    for k, run in enumerate(each.runs)
-                ],
+                "value": run.value,
+                "standard_error": run.error,
+                "theory": run.theory,
+                "difference": each.difference(k),
+                "difference_standard_error": each.error(k) if k else math.nan,
+                "sigma": each.sigma(k) if k else math.nan,
+                "difference_by_theory": each.expected(k),
             }
-            for each in numbers
-        ],
-    }
+            for k, run in enumerate(each.runs)
+        ]
+        headlines.append({"name": each.name, "label": each.label, "unit": each.unit, "runs": measured})
+    changes = {change.name: list(change.values) for change in names.changes}
+    return {"same": names.same, "changes": changes, "runs": runs, "headlines": headlines}

@@ -20,11 +20,8 @@ def list_scenes(
 
     found = scenarios.summaries()
     if as_json:
-        listed = [
-            {"name": name, "summary": each.sentence, "level": each.level, "minutes": each.minutes}
-            for name, each in found.items()
-        ]
-        say_json({"scenes": listed})
+        parts = ("name", "summary", "level", "minutes")
+        say_json({"scenes": [dict(zip(parts, (name, *each), strict=True)) for name, each in found.items()]})
     elif names:
         say("\n".join(found))
     else:

@@ -204,20 +204,12 @@ class Expectation:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the expectation as values that JSON can hold."""
-        errors = {
-            name: {**error._asdict(), "total": error.total, "label": self.labels[name]}
-            for name, error in self.way.errors.items()
-        }
-        return {
-            "wish": None if self.target is None else self.target.text,
-            "met": self.met,
-            "engine": self.way.engine,
-            "settings": dict(self.way.settings),
-            "cost": self.way.cost,
-            "members": self.way.members,
-            "differs": list(self.differs),
-            "errors": errors,
-        }
+        way, errors = self.way, {}
+        for name, error in way.errors.items():
+            errors[name] = {**error._asdict(), "total": error.total, "label": self.labels[name]}
+        made = {"wish": None if self.target is None else self.target.text, "met": self.met, "engine": way.engine}
+        made |= {"settings": dict(way.settings), "cost": way.cost, "members": way.members}
+        return {**made, "differs": list(self.differs), "errors": errors}
 
 
 def choose(

@@ -18,33 +18,17 @@ from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.link import check_nothing_changes, read_link
-from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare, replayed
+from atmosbox.simulation.preparation import Prepared, build, card, prepare, replayed
 from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.restart import Restart, check_alike, from_file, put_back, with_state
-from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
+from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of, verify
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from atmosbox.file.checkpoint import Checkpoint
 
-__all__ = [
-    "LEDGER_LIMIT",
-    "Card",
-    "Check",
-    "Interrupted",
-    "Outcome",
-    "Prepared",
-    "build",
-    "card",
-    "check_nothing_changes",
-    "execute",
-    "headlines_of",
-    "prepare",
-    "prepared_again",
-    "replayed",
-    "verify",
-]
+__all__ = ["LEDGER_LIMIT", "Prepared", "card", "check_nothing_changes", "headlines_of", "prepare", "replayed", "verify"]
 
 _BREATH = 0.1
 
@@ -228,17 +212,11 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
     named = str(made["scene"])
     own = named.endswith(".py") or os.sep in named
     if scene is None and own:
-        raise FileError(
-            f"{restart.source} is for the scene in the file {named}, which must be typed",
-            Command("run", (named, Option("resume", str(restart.source)))),
-        )
+        problem = f"{restart.source} is for the scene in the file {named}, which must be typed"
+        raise FileError(problem, Command("run", (named, Option("resume", str(restart.source)))))
     if scene is not None and os.fspath(scene).replace("_", "-") != named.replace("_", "-"):
         raise FileError(f"{restart.source} is for the scene {named}, not for {scene}: leave one of them out.")
-    prepared = prepare(
-        named if scene is None else scene,
-        made["settings"],
-        engine=str(made["engine"]),
-        save_molecules=made["save_molecules"],
-    )
+    typed, engine, kept = named if scene is None else scene, str(made["engine"]), made["save_molecules"]
+    prepared = prepare(typed, made["settings"], engine=engine, save_molecules=kept)
     again = read_link(made["replay"])[2] if "replay" in made else None
     return replace(prepared, expectation=None, stated=made.get("accuracy"), replay=again)

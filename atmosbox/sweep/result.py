@@ -177,11 +177,11 @@ def _headline(name: str, about: dict[str, Any], found: list[Floats], dims: tuple
 def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], command: str) -> dict[str, Any]:
     """Return the global attributes of the file of a sweep."""
     engines = " and ".join(sorted({str(each.engine) for each in plan.prepared}))
-    parameters: dict[str, Any] = {"scene": plan.scene, "settings": plan.defaults, "engine": engines}
     vary = {name: list(values) for name, values in plan.vary.items()}
     grid = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
-    parameters |= {"version": __version__, "save_molecules": False}
-    parameters["sweep"] = grid | {"accuracy": plan.accuracy, "headlines": names}
+    grid |= {"accuracy": plan.accuracy, "headlines": names}
+    parameters: dict[str, Any] = {"scene": plan.scene, "settings": plan.defaults, "engine": engines}
+    parameters |= {"version": __version__, "save_molecules": False, "sweep": grid}
     *others, last = [name.replace("_", " ") for name in plan.vary]
     return global_attributes(
         parameters,

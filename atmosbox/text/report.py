@@ -31,39 +31,39 @@ def next_command(command: str, path: Path) -> str:
     return f"atmosbox {command} {shlex.quote(f'./{name}' if name.startswith('-') else name)}"
 
 
+_DIFFERENCES = {"difference": "misfit", "expected_within": "allowed"}
+_DIFFERENCES |= {part: part for part in ("standard_error", "tolerance", "bias", "chance", "known")}
+"""The numbers of a headline that are differences of two of its values, with their names there."""
+
+
 def _shown(headline: Headline) -> dict[str, Any]:
     """Return the numbers of a headline in its display unit."""
     unit = headline.display_unit
 
-    def difference(value: float | None) -> float | None:
-        return None if value is None else from_si(value, unit, difference=True)
+    def of(part: str) -> float | None:
+        value = getattr(headline, _DIFFERENCES.get(part, part))
+        return None if value is None else from_si(value, unit, difference=part in _DIFFERENCES)
 
-    return {
-        "value": from_si(headline.value, unit),
-        "standard_error": difference(headline.standard_error),
-        "theory": None if headline.theory is None else from_si(headline.theory, unit),
-        "difference": difference(headline.misfit),
-        "tolerance": difference(headline.tolerance),
-        "bias": difference(headline.bias),
-        "expected_within": difference(headline.allowed),
-        "chance": difference(headline.chance),
-        "known": difference(headline.known),
-    }
+    parts = (
+        "value",
+        "standard_error",
+        "theory",
+        "difference",
+        "tolerance",
+        "bias",
+        "expected_within",
+        "chance",
+        "known",
+    )
+    return {part: of(part) for part in parts}
 
 
 def headline_json(headline: Headline) -> dict[str, Any]:
     """Return a headline as a record for JSON, in the unit in which the table shows it."""
-    return {
-        "name": headline.name,
-        "label": headline.label,
-        "unit": headline.display_unit,
-        **_shown(headline),
-        "reason": headline.excuse,
-        "agrees": headline.agrees,
-        "verdict": headline.verdict,
-        "resolved": headline.resolved,
-        "program": headline.program,
-    }
+    words = {"reason": headline.excuse}
+    words |= {part: getattr(headline, part) for part in ("agrees", "verdict", "resolved", "program")}
+    named = {"name": headline.name, "label": headline.label, "unit": headline.display_unit}
+    return {**named, **_shown(headline), **words}
 
 
 def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
@@ -117,15 +117,8 @@ def _row(headline: Headline) -> list[str]:
     if headline.verdict is None:
         return [_named(headline), found, "", "", "", ""]
     theory = number(shown["theory"], decimals, power) if shown["theory"] else "0"
-    difference = number(shown["difference"], decimals, power, "+")
-    return [
-        _named(headline),
-        found,
-        theory,
-        f"{difference} {slashed(headline.difference_unit)}".rstrip(),
-        headline.shown(headline.allowed, "±"),
-        headline.verdict,
-    ]
+    off = f"{number(shown['difference'], decimals, power, '+')} {slashed(headline.difference_unit)}".rstrip()
+    return [_named(headline), found, theory, off, headline.shown(headline.allowed, "±"), headline.verdict]
 
 
 def _expected(headlines: Sequence[Headline]) -> list[str]:
@@ -258,26 +251,17 @@ def comparison_lines(files: Sequence[str], names: Naming, numbers: Sequence[Comp
     made = [*wrapped(head, columns), *(line for run in runs for line in wrapped(run, columns, indent="  ")), ""]
     if not numbers:
         return [*made, "No number is in both files: each run shows its own with atmosbox check."]
-    rows = []
+    rows, pair = [], len(files) == 2
     for each in numbers:
-        unit = "" if each.unit in ("", "1") else f" [{each.unit}]"
-        if len(files) == 2:
-            rows.append(
-                [each.label + unit, *(_said(each, run) for run in (0, 1)), _changed(each, 1), _by_theory(each, 1)]
-            )
+        what = each.label + ("" if each.unit in ("", "1") else f" [{each.unit}]")
+        if pair:
+            rows.append([what, _said(each, 0), _said(each, 1), _changed(each, 1), _by_theory(each, 1)])
             continue
-        for run, label in enumerate(names.labels):
-            first = run == 0
-            rows.append(
-                [each.label + unit if first else "", label, _said(each, run)]
-                + ["", ""] * first
-                + [_changed(each, run), _by_theory(each, run)] * (not first)
-            )
-    if len(files) == 2:
-        header = ["quantity", *names.labels, "difference", "by theory"]
-    else:
-        header = ["quantity", "run", "measured", "minus the first", "by theory"]
-    return [*made, *table(header, rows, columns)]
+        rows.append([what, names.labels[0], _said(each, 0), "", ""])
+        for run, label in enumerate(names.labels[1:], 1):
+            rows.append(["", label, _said(each, run), _changed(each, run), _by_theory(each, run)])
+    parts = [*names.labels, "difference"] if pair else ["run", "measured", "minus the first"]
+    return [*made, *table(["quantity", *parts, "by theory"], rows, columns)]
 
 
 def _said(each: Compared, run: int) -> str:
