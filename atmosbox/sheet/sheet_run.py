@@ -133,13 +133,8 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
     >>> [(each.letter, each.fact("ascent")) for each in found]
     [('A', 1600.0), ('B', 160.0)]
     """
-    found = [
-        Trial(
-            _LETTERS[0],
-            "with the default settings" if not first.settings.changed().keys() - {"seed"} else "with these settings",
-            first,
-        )
-    ]
+    default = not first.settings.changed().keys() - {"seed"}
+    found = [Trial(_LETTERS[0], "with the default settings" if default else "with these settings", first)]
     for letter, change in zip(_LETTERS[1:], changes, strict=False):
         settings = type(first.settings).from_user({**first.settings.as_dict(), **change.set})
         if settings == first.settings:
@@ -158,18 +153,16 @@ def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | Non
     >>> made.fact("largest_energy_change").theory
     0.0
     """
-    made = []
-    for number, trial in enumerate(asked):
+    made: list[Trial] = []
 
-        def show(share: float, word: str, before: int = number) -> None:
-            if progress is not None:
-                progress((before + share) / len(asked), word)
+    def show(share: float, word: str) -> None:
+        if progress is not None:
+            progress((len(made) + share) / len(asked), word)
 
+    for trial in asked:
         outcome = runner.execute(trial.prepared, progress=show, command=trial.command)
         if not outcome.ledger <= runner.LEDGER_LIMIT:
-            raise PhysicsError(
-                f"The energy budget of run {trial.letter} is off by {outcome.ledger:.0e}, "
-                f"more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it."
-            )
+            problem = f"The energy budget of run {trial.letter} is off by {outcome.ledger:.0e}"
+            raise PhysicsError(f"{problem}, more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it.")
         made.append(replace(trial, outcome=outcome))
     return tuple(made)

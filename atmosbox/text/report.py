@@ -31,31 +31,17 @@ def next_command(command: str, path: Path) -> str:
     return f"atmosbox {command} {shlex.quote(f'./{name}' if name.startswith('-') else name)}"
 
 
-_DIFFERENCES = {"difference": "misfit", "expected_within": "allowed"}
-_DIFFERENCES |= {part: part for part in ("standard_error", "tolerance", "bias", "chance", "known")}
-"""The numbers of a headline that are differences of two of its values, with their names there."""
-
-
 def _shown(headline: Headline) -> dict[str, Any]:
     """Return the numbers of a headline in its display unit."""
-    unit = headline.display_unit
-
-    def of(part: str) -> float | None:
-        value = getattr(headline, _DIFFERENCES.get(part, part))
-        return None if value is None else from_si(value, unit, difference=part in _DIFFERENCES)
-
-    parts = (
-        "value",
-        "standard_error",
-        "theory",
-        "difference",
-        "tolerance",
-        "bias",
-        "expected_within",
-        "chance",
-        "known",
-    )
-    return {part: of(part) for part in parts}
+    unit, theory = headline.display_unit, headline.theory
+    shown = {"value": from_si(headline.value, unit), "standard_error": headline.standard_error}
+    shown |= {"theory": None if theory is None else from_si(theory, unit), "difference": headline.misfit}
+    shown |= {"tolerance": headline.tolerance, "bias": headline.bias, "expected_within": headline.allowed}
+    shown |= {"chance": headline.chance, "known": headline.known}
+    for part, value in shown.items():
+        if value is not None and part not in ("value", "theory"):
+            shown[part] = from_si(value, unit, difference=True)
+    return shown
 
 
 def headline_json(headline: Headline) -> dict[str, Any]:

@@ -259,14 +259,12 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
     texts = "mean error of a run against theory", "standard error of bias", "standard deviation of a single run"
     for name, values, text in zip(("bias", "bias_se", "noise"), parts, texts, strict=True):
         data[name] = (("rung", "quantity"), values, {"long_name": text})
+    theory = "value of theory, in SI units; for a curve the mean of its absolute value"
     of_quantities: dict[str, tuple[Sequence[Any], str]] = {
         "quantity": (names, "what is measured"),
         "label": ([q.label for q in about], "name in a table"),
         "unit": ([q.unit for q in about], "unit of bias and noise: K, or 1 for a share of the theory"),
-        "theory": (
-            [q.theory for q in about],
-            "value of theory, in SI units; for a curve the mean of its absolute value",
-        ),
+        "theory": ([q.theory for q in about], theory),
     }
     coords: dict[str, Any] = {"rung": ("rung", [way.label for way in ways], {"long_name": "engine and settings"})}
     coords |= {name: ("quantity", each, {"long_name": text}) for name, (each, text) in of_quantities.items()}
