@@ -97,19 +97,17 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
         fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
         raise refusal(key, "outside the table [settings]", fix)
     settings = content.get("settings", {})
-    words: dict[str, str | None] = {}
-    for key, (problem, fix) in _WORDS.items():
-        word = content.get(key)
-        if word is not None and not (isinstance(word, str) and word.strip()):
-            raise refusal(key, problem, fix)
-        words[key] = word and word.strip()
+    words = {key: str(content[key]).strip() for key in _WORDS if key in content}
+    for key, word in words.items():
+        if not (word and isinstance(content[key], str)):
+            raise refusal(key, *_WORDS[key])
     if not isinstance(settings, dict):
         raise refusal("settings", "that is not a table", "write a line [settings], and below it the settings")
     for key, value in settings.items():
         if not isinstance(value, Value):
             fix = 'give one number, true, false or a text in quotes, such as "25degC"'
             raise refusal(key, "that is not a number, switch or text", fix)
-    return Asked(words["scene"] or "", settings, words["engine"], accuracy=words["accuracy"])
+    return Asked(words.get("scene", ""), settings, words.get("engine"), accuracy=words.get("accuracy"))
 
 
 def _toml(raw: bytes, where: str) -> dict[str, Any]:

@@ -26,13 +26,7 @@ class BusyError(FileError):
 
 
 def host() -> str:
-    """Return the name of this computer.
-
-    Examples
-    --------
-    >>> bool(host())
-    True
-    """
+    """Return the name of this computer."""
     return socket.gethostname() or "localhost"
 
 

@@ -102,13 +102,7 @@ def part_path(path: AnyPath) -> Path:
 
 
 def run_is_there(path: AnyPath) -> bool:
-    """Return whether there is the file of a run, finished or not.
-
-    Examples
-    --------
-    >>> run_is_there("no/such/folder/run.nc")
-    False
-    """
+    """Return whether there is the file of a run, finished or not."""
     return os.path.lexists(path) or os.path.lexists(part_path(path))
 
 
@@ -208,14 +202,6 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
     """Write a file, which `check_writable` or `named` has checked, whole or not at all.
 
     A file that was there before is kept if the disk is full.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_whole(Path(folder, "a.txt"), b"air")
-    ...     Path(folder, "a.txt").read_text()
-    'air'
     """
     with whole_file(path) as temporary:
         temporary.write_bytes(content)

@@ -104,18 +104,8 @@ def preformatted(text: str) -> str:
 def progress_bar(name: str, progress: Show | bool | None = None) -> Iterator[Show | None]:
     """Show the progress of a run: in a notebook below its cell, on a terminal in the last line, elsewhere not at all.
 
-    Parameters
-    ----------
-    name
-        The name of what runs.
-    progress
-        A function to call instead of showing a bar, with the share that is done and the name of the present step;
-        False to show nothing; True to show progress elsewhere too.
-
-    Yields
-    ------
-    callable or None
-        The function that the run calls; None if nothing is shown.
+    `progress` is a function to call instead, with the share that is done and the name of the present step; False to
+    show nothing; True to show progress elsewhere too. Yields the function that the run calls; None if nothing is shown.
     """
     if callable(progress):
         yield progress

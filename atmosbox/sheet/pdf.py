@@ -53,22 +53,8 @@ class Printed(NamedTuple):
 
 
 def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
-    """Return a sheet as PDF.
+    """Return a sheet as PDF, on one of the `PAPERS`.
 
-    Parameters
-    ----------
-    sheet
-        From `worksheet`.
-    paper
-        One of `PAPERS`.
-
-    Returns
-    -------
-    Printed
-        The bytes, and the number of pages.
-
-    Notes
-    -----
     The fonts are embedded, so that every character is shown on every computer and can be searched for. The file
     contains neither a date nor a random number.
 
@@ -88,14 +74,7 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
 
 @functools.cache
 def load_fonts() -> None:
-    """Register the fonts that come with matplotlib.
-
-    Examples
-    --------
-    >>> load_fonts()
-    >>> pdfmetrics.stringWidth("±", BODY, 10.0) > 0.0
-    True
-    """
+    """Register the fonts that come with matplotlib."""
     import matplotlib
 
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"

@@ -41,13 +41,7 @@ class Trial:
 
     @property
     def file(self) -> str:
-        """Name of the file that it writes.
-
-        Examples
-        --------
-        >>> Trial("B", "", runner.prepare("lifting-dry", {})).file
-        'lifting-dry-B.nc'
-        """
+        """Name of the file that it writes."""
         stem = self.prepared.scene.replace("\\", "/").rpartition("/")[2].removesuffix(".py")
         return f"{stem}-{self.letter}.nc"
 
@@ -69,24 +63,12 @@ class Trial:
 
     @property
     def plot_command(self) -> str:
-        """The command that draws its figure.
-
-        Examples
-        --------
-        >>> Trial("A", "", runner.prepare("lifting-dry", {})).plot_command
-        'atmosbox plot lifting-dry-A.nc'
-        """
+        """The command that draws its figure."""
         return f"atmosbox plot {shlex.quote(self.file)}"
 
     @property
     def page(self) -> str:
-        """Name of the page in which it runs, for a sheet that is done without Python.
-
-        Examples
-        --------
-        >>> Trial("B", "", runner.prepare("lifting-dry", {})).page
-        'lifting-dry-B.html'
-        """
+        """Name of the page in which it runs, for a sheet that is done without Python."""
         return f"{self.file.removesuffix('.nc')}.html"
 
     @property

@@ -128,8 +128,6 @@ def _balance(dataset: xr.Dataset) -> Check:
     terms = {name: dataset[name].values for name in (*STORES, *GIVEN, *_GIVEN_BEFORE) if name in dataset}
     worst = float(np.max(residual(terms))) if dataset.sizes["elapsed_time"] else math.nan
     passed = worst <= LEDGER_LIMIT
-    made = ", what the scheme made" if "numerical_heat" in terms else ""
-    said = f"energy minus heat{made} and work is constant: it changes by {worst:.0e} of it at most"
-    if not passed:
-        said = f"energy minus heat{made} and work is not constant: it changes by {worst:.0e} of it"
-    return Check("balance", passed, said)
+    what = f"energy minus heat{', what the scheme made' if 'numerical_heat' in terms else ''} and work"
+    said = f"is{'' if passed else ' not'} constant: it changes by {worst:.0e} of it{' at most' if passed else ''}"
+    return Check("balance", passed, f"{what} {said}")
