@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -155,7 +155,7 @@ def _describe(prepared: Prepared, path: Path, to: Result | None) -> None:
     ]
     if to is None:
         return tell("\n".join(lines))
-    record = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
+    record: dict[str, Any] = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
     record |= {"engine": str(prepared.engine), "accuracy": expectation_json(prepared.expectation)}
     record |= {"expected_seconds": hint and hint.seconds, "settings": settings, "facts": dict(card.facts)}
     to.say(path, record, lines)

@@ -92,7 +92,13 @@ def sweep(
 def _describe(grid: Plan, path: Path, to: Result) -> None:
     """Print which runs the sweep would make."""
     points = range(1, len(grid.prepared) + 1)
-    record = {"dry_run": True, "scene": grid.scene, "title": grid.title, "file": str(path), "runs": grid.runs}
+    record: dict[str, Any] = {
+        "dry_run": True,
+        "scene": grid.scene,
+        "title": grid.title,
+        "file": str(path),
+        "runs": grid.runs,
+    }
     record |= {"members": grid.members, "settings": dict(grid.defaults), "points": list(map(grid.values, points))}
     lines = [f"{grid.scene}: {grid.title}", "", *table(list(grid.vary), [*map(grid.typed, points)], width()), ""]
     lines += [f"runs: {grid.runs}, {grid.members} at each of {len(points)} points"]

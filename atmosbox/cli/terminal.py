@@ -41,10 +41,6 @@ def width() -> int:
     return shutil.get_terminal_size().columns if tty or os.environ.get("COLUMNS", "").isdecimal() else ENDLESS
 
 
-def _listed(given: object) -> list[object]:
-    return list(given) if isinstance(given, list) else [] if given is None else [given]
-
-
 def _reason(error: Exception) -> str:
     """Return the reason of an error in one short line."""
     text = str(error.args[0] if isinstance(error, KeyError) and error.args else error)
@@ -132,7 +128,8 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
 
             if kwargs.get("verbose"):
                 tell(traceback.format_exc())
-            read = [str(file) for name in ("file", "files", "resume", "source") for file in _listed(kwargs.get(name))]
+            given = [kwargs.get(name) for name in ("file", "resume", "source")] + [*kwargs.get("files", ())]
+            read = [str(file) for file in given if file is not None]
             scene = str(kwargs.get("scene") or "")
             own = scenarios.place(error) or (scene if scene.endswith(".py") else None)
             said = f"This is a bug in atmosbox ({_reason(error)})"

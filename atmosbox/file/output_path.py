@@ -156,11 +156,6 @@ def clear(path: Path, *, everything: bool = False) -> None:
                 old.unlink(missing_ok=True)
 
 
-def temporary_path(path: Path) -> Path:
-    """Return the path of the temporary file, whose name identifies the computer and the process that writes."""
-    return path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
-
-
 def _here() -> str:
     """Return eight hexadecimal digits that identify this computer."""
     return f"{zlib.crc32(host().encode()):08x}"
@@ -183,7 +178,8 @@ def whole_file(path: Path) -> Iterator[Path]:
     ['a.txt']
     """
     clear(path)
-    temporary = temporary_path(path)
+    # its name identifies the computer and the process that writes
+    temporary = path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
     try:
         yield temporary
         # without this, the file can have its final name and yet be empty after a power failure

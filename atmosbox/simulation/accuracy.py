@@ -119,8 +119,8 @@ class Table:
         about, ways = entry["headlines"], []
         for way in entry["ways"]:
             errors = {
-                name: ExpectedError(about[name]["unit"], *numbers, about[name]["theory"])
-                for name, numbers in way["errors"].items()
+                name: ExpectedError(about[name]["unit"], bias, bias_se, noise, about[name]["theory"])
+                for name, (bias, bias_se, noise) in way["errors"].items()
             }
             ways.append(Measured(way["engine"], way["settings"], way["cost"], way["members"], errors))
         labels = {name: one["label"] for name, one in about.items()}
@@ -207,7 +207,11 @@ class Expectation:
         way, errors = self.way, {}
         for name, error in way.errors.items():
             errors[name] = {**error._asdict(), "total": error.total, "label": self.labels[name]}
-        made = {"wish": None if self.target is None else self.target.text, "met": self.met, "engine": way.engine}
+        made: dict[str, Any] = {
+            "wish": None if self.target is None else self.target.text,
+            "met": self.met,
+            "engine": way.engine,
+        }
         made |= {"settings": dict(way.settings), "cost": way.cost, "members": way.members}
         return {**made, "differs": list(self.differs), "errors": errors}
 

@@ -160,7 +160,7 @@ def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], comman
     """Return the global attributes of the file of a sweep."""
     engines = " and ".join(sorted({str(each.engine) for each in plan.prepared}))
     vary = {name: list(values) for name, values in plan.vary.items()}
-    grid = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
+    grid: dict[str, Any] = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
     grid |= {"accuracy": plan.accuracy, "headlines": names}
     parameters: dict[str, Any] = {"scene": plan.scene, "settings": plan.defaults, "engine": engines}
     parameters |= {"version": __version__, "save_molecules": False, "sweep": grid}

@@ -34,7 +34,7 @@ def next_command(command: str, path: Path) -> str:
 def _shown(headline: Headline) -> dict[str, Any]:
     """Return the numbers of a headline in its display unit."""
     unit, theory = headline.display_unit, headline.theory
-    shown = {"value": from_si(headline.value, unit), "standard_error": headline.standard_error}
+    shown: dict[str, Any] = {"value": from_si(headline.value, unit), "standard_error": headline.standard_error}
     shown |= {"theory": None if theory is None else from_si(theory, unit), "difference": headline.misfit}
     shown |= {"tolerance": headline.tolerance, "bias": headline.bias, "expected_within": headline.allowed}
     shown |= {"chance": headline.chance, "known": headline.known}
@@ -46,7 +46,7 @@ def _shown(headline: Headline) -> dict[str, Any]:
 
 def headline_json(headline: Headline) -> dict[str, Any]:
     """Return a headline as a record for JSON, in the unit in which the table shows it."""
-    words = {"reason": headline.excuse}
+    words: dict[str, Any] = {"reason": headline.excuse}
     words |= {part: getattr(headline, part) for part in ("agrees", "verdict", "resolved", "program")}
     named = {"name": headline.name, "label": headline.label, "unit": headline.display_unit}
     return {**named, **_shown(headline), **words}

@@ -116,7 +116,7 @@ def measure(
         "ways": [way.label for way in ways],
     }
     told = [{"engine": s.engine, "vary": s.vary, "order": dict(s.order), "settings": dict(s.settings)} for s in series]
-    about = {"scene": scene, "request": request, "series": told}
+    about: dict[str, Any] = {"scene": scene, "request": request, "series": told}
     results: list[list[Trial]] = [[] for _ in own]
     earlier = ""
     checkpoint = None if out is None else Checkpoint(out, force=force)
