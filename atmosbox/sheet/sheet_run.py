@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from atmosbox.errors import ConfigError, PhysicsError, shown
+from atmosbox.errors import Command, ConfigError, Option, PhysicsError, Setting, on_command_line, shown
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
 from atmosbox.sheet.sums import Measured, SetNumber
@@ -56,15 +55,14 @@ class Trial:
         """
         settings, engine = self.prepared.settings, self.prepared.unusual_engine
         known = {p.name: p for p in settings.describe()}
-        words = ["atmosbox run", shlex.quote(self.prepared.scene), f"--seed {settings.seed}"]
-        words += [f"--set {name}={known[name].typed(v)}" for name, v in settings.changed().items() if name != "seed"]
-        words += [f"--engine {shlex.quote(engine)}"] if engine else []
-        return " ".join([*words, f"--out {shlex.quote(self.file)}"])
+        changed = [Setting(name, known[name].typed(v)) for name, v in settings.changed().items() if name != "seed"]
+        last = [*([Option("engine", engine)] if engine else []), Option("out", self.file)]
+        return on_command_line(Command("run", (self.prepared.scene, Option("seed", settings.seed), *changed, *last)))
 
     @property
     def plot_command(self) -> str:
         """The command that draws its figure."""
-        return f"atmosbox plot {shlex.quote(self.file)}"
+        return on_command_line(Command("plot", (self.file,)))
 
     @property
     def page(self) -> str:
