@@ -126,7 +126,7 @@ class Output:
 class Result(Output):
     """The options of a command that writes a file and prints what is in it, as text or as JSON."""
 
-    as_json: Annotated[bool, switch("--json", "Print one JSON object and nothing else.")] = False
+    as_json: Json = False
 
     def say(self, path: Path, record: Mapping[str, Any], lines: Sequence[str]) -> None:
         """Print the result as JSON, as the path alone, or as text."""

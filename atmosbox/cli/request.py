@@ -140,8 +140,9 @@ def gather(sought: Sought, save_molecules: bool | None = None) -> Asked:
     >>> gather(Sought("lifting-dry", ["temperature=25degC"], seed="7")).settings
     {'temperature': '25degC', 'seed': '7'}
     """
-    scene, accuracy, source, of_file = sought.scene or "", sought.accuracy, sought.source, None
+    scene, accuracy, source = sought.scene or "", sought.accuracy, sought.source
     settings: dict[str, Any] = {}
+    of_file: str | None = None
     if source is not None:
         run = _earlier(source)
         scene = _agreed(scene, run.scene, "--from", source, FileError)

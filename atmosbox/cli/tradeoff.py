@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -57,10 +57,9 @@ def tradeoff(
     path = check_writable(netcdf_name(to.path(for_scene(scene, "-tradeoff.nc"), written)), to.force)
     files = [check_writable(each, to.force) for each in written(path)]
     with progress(scene, quiet=to.quiet) as show:
-        found = measure(
-            scene, settings=assignments(values or ()), budget=seconds, seed=first, progress=show, command=typed(ctx),
-            out=path, force=to.force, note=None if to.quiet else lambda remark: tell(f"note: {remark}"),
-        )  # fmt: skip
+        how: dict[str, Any] = {"budget": seconds, "seed": first, "out": path, "force": to.force, "command": typed(ctx)}
+        note = None if to.quiet else lambda remark: tell(f"note: {remark}")
+        found = measure(scene, settings=assignments(values or ()), progress=show, note=note, **how)
     records = rows(found)
     cells = [["" if cell != cell else cell for cell in record.values()] for record in records]  # NaN is left out
     write_whole(files[1], as_csv([list(records[0]), *cells]))
