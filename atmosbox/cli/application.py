@@ -128,8 +128,9 @@ def _ungrouped(function: Callable[..., None], helps: dict[str, str]) -> Callable
         }
         function(**grouped, **{name: value for name, value in given.items() if name in own})
 
-    called.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+    parameters = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
         for name, (kind, default) in flat.items()
-    )
+    ]
+    called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     return called

@@ -11,7 +11,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from typing import Never, ParamSpec, TypeVar
+from typing import Any, Never, ParamSpec, TypeVar
 
 import typer
 
@@ -128,7 +128,8 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
 
             if kwargs.get("verbose"):
                 tell(traceback.format_exc())
-            given = [kwargs.get(name) for name in ("file", "resume", "source")] + [*kwargs.get("files", ())]
+            options: dict[str, Any] = kwargs
+            given = [*(options.get(name) for name in ("file", "resume", "source")), *options.get("files", ())]
             read = [str(file) for file in given if file is not None]
             scene = str(kwargs.get("scene") or "")
             own = scenarios.place(error) or (scene if scene.endswith(".py") else None)

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming
     from atmosbox.scene.headline import Headline
     from atmosbox.scene.settings import Parameter
-    from atmosbox.simulation.runner import Card, Outcome, Prepared
+    from atmosbox.simulation.preparation import Card, Prepared
+    from atmosbox.simulation.runner import Outcome
 
 
 def next_command(command: str, path: Path) -> str:
