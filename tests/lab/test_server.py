@@ -14,8 +14,7 @@ from urllib.parse import urlencode
 
 import pytest
 
-from atmosbox.cli.option import Sought
-from atmosbox.cli.request import gather, with_fewer_molecules
+from atmosbox.cli.request import Sought, gather, with_fewer_molecules
 from atmosbox.errors import SettingError
 from atmosbox.lab.server import PORT, Server
 from atmosbox.lab.starts import AS_WRITTEN
