@@ -25,29 +25,6 @@ import shlex
 from collections.abc import Callable, Iterable, Mapping
 from typing import ClassVar, NamedTuple
 
-__all__ = [
-    "AtmosboxError",
-    "Command",
-    "ConfigError",
-    "DiskFullError",
-    "EngineError",
-    "FileError",
-    "Given",
-    "Option",
-    "PackingError",
-    "PhysicsError",
-    "Setting",
-    "SettingError",
-    "SoundingError",
-    "UnitError",
-    "UnknownSceneError",
-    "UnknownSettingError",
-    "either",
-    "in_python",
-    "on_command_line",
-    "shown",
-]
-
 
 def shown(value: object, longest: int = 60) -> str:
     r"""Return a value in the form in which a sentence can repeat it: short, printable and on one line.

@@ -19,7 +19,7 @@ import xarray as xr
 
 from atmosbox import scenarios
 from atmosbox.cli import check, terminal
-from atmosbox.cli.option import _completed
+from atmosbox.cli.option import Sought, _completed
 from atmosbox.cli.request import gather
 from atmosbox.errors import EngineError
 from atmosbox.file import checkpoint, output_lock
@@ -268,7 +268,7 @@ def test_the_molecules_are_saved_on_request_and_those_of_a_small_run_unasked(fol
         result = atmosbox_in_process(*words, "--out", "x.nc", "--force")
         assert ("molecule_position" in output.read("x.nc")) is kept, words
         assert ("molecules: not kept" in result.stdout) is (words is large)
-        assert (gather(None, source="x.nc").save_molecules) is {"-": kept}.get(words[-1][0]), words
+        assert (gather(Sought(source="x.nc")).save_molecules) is {"-": kept}.get(words[-1][0]), words
 
 
 def test_a_scene_of_ones_own_runs_by_its_path_and_its_prints_are_no_result(folder):

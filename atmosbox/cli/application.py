@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import copy
+import functools
+import inspect
 import shlex
 import sys
 from collections.abc import Callable
-from typing import Annotated, Any, ParamSpec, TypeVar
+from typing import Annotated, Any, get_type_hints
 
 import typer
 from typer.core import TyperGroup
 
+from atmosbox.cli.option import Output, Result, Sought, Verbose
 from atmosbox.cli.terminal import guarded, say
 from atmosbox.cli.usage import Command, OneSentence, UsageError, command_refusal
-
-P = ParamSpec("P")
-R = TypeVar("R")
 
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
@@ -90,10 +91,46 @@ def _atmosbox(
     """Take the options that stand before a command."""
 
 
-def command(*examples: str, name: str | None = None) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that makes a function a command whose errors end it as `guarded` says."""
+def command(*examples: str, name: str | None = None, **helps: str) -> Callable[[Callable[..., None]], Any]:
+    """Return a decorator that makes a function a command whose errors end it as `guarded` says.
 
-    def added(function: Callable[P, R]) -> Callable[P, R]:
-        return app.command(name, cls=Command, epilog=_examples(*examples))(guarded(function))
+    A parameter of the type `Sought`, `Output` or `Result` stands for the options of that group; `helps` has the help
+    of those that mean something else in each command. Every command has ``--verbose``.
+    """
+
+    def added(function: Callable[..., None]) -> Any:
+        return app.command(name, cls=Command, epilog=_examples(*examples))(guarded(_ungrouped(function, helps)))
 
     return added
+
+
+def _ungrouped(function: Callable[..., None], helps: dict[str, str]) -> Callable[..., None]:
+    """Return a function that takes the options of a group one by one."""
+    own = inspect.signature(function, eval_str=True).parameters
+    groups: dict[str, Any] = {name: p.annotation for name, p in own.items() if p.annotation in (Sought, Output, Result)}
+    flat: dict[str, tuple[Any, Any]] = {}
+    for name, each in sorted(own.items(), key=lambda item: item[1].annotation in (Output, Result)):  # they come last
+        group = groups.get(name)
+        told = {name: each.annotation} if group is None else get_type_hints(group, include_extras=True)
+        flat |= {field: (kind, getattr(group, field, each.default)) for field, kind in told.items()}
+    flat.setdefault("verbose", (Verbose, False))
+    for name, help in helps.items():
+        kind, default = flat[name]
+        option = copy.copy(kind.__metadata__[0])
+        option.help = help
+        flat[name] = Annotated[kind.__origin__, option], default
+
+    @functools.wraps(function)
+    def called(**given: Any) -> None:
+        grouped = {
+            name: group(**{field: given.pop(field) for field in group.__dataclass_fields__})
+            for name, group in groups.items()
+        }
+        function(**grouped, **{name: value for name, value in given.items() if name in own})
+
+    parameters = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+        for name, (kind, default) in flat.items()
+    ]
+    called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    return called

@@ -8,12 +8,12 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Json, Verbose
+from atmosbox.cli.option import Json, RunFile
 from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.errors import PhysicsError
 from atmosbox.text.table import table
@@ -24,9 +24,8 @@ CHECKER = "compliance-checker"
 
 @command("atmosbox check lifting-dry.nc", "atmosbox check lifting-dry.nc --json")
 def check(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.")],
+    file: RunFile,
     as_json: Json = False,
-    verbose: Verbose = False,
 ) -> None:
     """Verify the physics in a file.
 
@@ -82,9 +81,5 @@ def conventions(path: Path) -> Conventions:
 def _messages(report: dict[str, Any]) -> list[str]:
     """Return the messages of the compliance-checker about what is wrong."""
     parts = [entry for rank in ("high", "medium", "low") for entry in report[f"{rank}_priorities"]]
-    return [
-        f"{part['name']}: {message}"
-        for part in parts
-        if part["value"][0] < part["value"][1]
-        for message in part["msgs"] or ["not kept"]
-    ]
+    wrong = [part for part in parts if part["value"][0] < part["value"][1]]
+    return [f"{part['name']}: {message}" for part in wrong for message in part["msgs"] or ["not kept"]]

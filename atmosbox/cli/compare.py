@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, Json, Theme, Verbose, beside, chosen, out_option, quiet_option
-from atmosbox.cli.terminal import say, say_json, tell, width
+from atmosbox.cli.option import Result, Theme, beside
+from atmosbox.cli.terminal import tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.report import comparison_lines
 
@@ -24,10 +24,12 @@ if TYPE_CHECKING:
     "atmosbox compare cold.nc warm.nc",
     "atmosbox compare cold.nc mild.nc warm.nc --format pdf --theme slides",
     "atmosbox compare dry.nc moist.nc --out both.html",
+    out="The figure.  [default: beside FILE, named after all files]",
+    quiet="Print only the path of the figure.",
 )
 def compare(
     files: Annotated[list[str], typer.Argument(metavar="FILE FILE...", help="Two to six runs.")],
-    out: Annotated[str | None, out_option("The figure.  [default: beside FILE, named after all files]")] = None,
+    to: Result,
     format: Annotated[
         Literal["png", "svg", "pdf", "html"] | None,
         typer.Option(
@@ -35,10 +37,6 @@ def compare(
         ),
     ] = None,
     theme: Theme = "notes",
-    force: Force = False,
-    as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print only the path of the figure.")] = False,
-    verbose: Verbose = False,
 ) -> None:
     """Compare runs in one figure, and show by how much their numbers differ.
 
@@ -49,8 +47,8 @@ def compare(
     from atmosbox.file.netcdf import read
     from atmosbox.file.output_path import check_writable
 
-    kind = format or Path(out or "").suffix[1:].lower()
-    path = chosen(out, beside(files, kind or "png"), force=force, quiet=quiet)
+    kind = format or Path(to.out or "").suffix[1:].lower()
+    path = to.path(beside(files, kind or "png"))
     datasets = [read(file) for file in files]
 
     from atmosbox.plot.compare import compared, naming, save
@@ -63,47 +61,34 @@ def compare(
             raise SettingError("FILE", None, f"is given {len(files)} times, and a page shows two runs", f"type {pair}")
         from atmosbox.page import save as save_page
 
-        check_writable(path, force)
-        path = save_page(datasets, path, force=force)
+        check_writable(path, to.force)
+        path = save_page(datasets, path, force=to.force)
     else:
-        path = save(datasets, names, path, format, theme=theme, force=force)
+        path = save(datasets, names, path, format, theme=theme, force=to.force)
     if names.same:
         tell(f"note: {' and '.join(files)} hold the same run")
-    if as_json:
-        say_json({"file": str(path), **as_record(files, names, numbers)})
-    elif quiet:
-        say(str(path))
-    else:
-        say("\n".join([*comparison_lines(files, names, numbers, width()), "", f"file: {path}"]))
+    lines = [*comparison_lines(files, names, numbers, width()), "", f"file: {path}"]
+    to.say(path, {"file": str(path), **as_record(files, names, numbers)}, lines)
 
 
 def as_record(files: Sequence[str], names: Naming, numbers: Sequence[Compared]) -> dict[str, Any]:
     """Return the comparison as a record for JSON."""
-    return {
-        "same": names.same,
-        "changes": {change.name: list(change.values) for change in names.changes},
-        "runs": [
-            {"file": file, "label": label, "scene": scene}
-            for file, label, scene in zip(files, names.labels, names.scenes, strict=True)
-        ],
-        "headlines": [
+    named = zip(files, names.labels, names.scenes, strict=True)
+    runs = [{"file": file, "label": label, "scene": scene} for file, label, scene in named]
+    headlines = []
+    for each in numbers:
+        measured = [
             {
-                "name": each.name,
-                "label": each.label,
-                "unit": each.unit,
-                "runs": [
-                    {
-                        "value": run.value,
-                        "standard_error": run.error,
-                        "theory": run.theory,
-                        "difference": each.difference(k),
-                        "difference_standard_error": each.error(k) if k else math.nan,
-                        "sigma": each.sigma(k) if k else math.nan,
-                        "difference_by_theory": each.expected(k),
-                    }
-                    for k, run in enumerate(each.runs)
-                ],
+                "value": run.value,
+                "standard_error": run.error,
+                "theory": run.theory,
+                "difference": each.difference(k),
+                "difference_standard_error": each.error(k) if k else math.nan,
+                "sigma": each.sigma(k) if k else math.nan,
+                "difference_by_theory": each.expected(k),
             }
-            for each in numbers
-        ],
-    }
+            for k, run in enumerate(each.runs)
+        ]
+        headlines.append({"name": each.name, "label": each.label, "unit": each.unit, "runs": measured})
+    changes = {change.name: list(change.values) for change in names.changes}
+    return {"same": names.same, "changes": changes, "runs": runs, "headlines": headlines}

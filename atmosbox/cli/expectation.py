@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.simulation.accuracy import TARGETS, cost, said
+from atmosbox.scene.target import TARGETS
+from atmosbox.simulation.accuracy import cost, said
 from atmosbox.text.table import table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline
-    from atmosbox.simulation.accuracy import Expectation, ExpectedError, Target
+    from atmosbox.scene.target import Target
+    from atmosbox.simulation.accuracy import Expectation, ExpectedError
 
 
 def expectation_lines(
@@ -31,16 +33,11 @@ def expectation_lines(
     if target is not None and not expectation.met:
         lines += wrapped(f"Nothing that was measured is within {target.limits}: this comes nearest.", width)
     found = {headline.name: headline for headline in headlines}
-    rows = [
-        [
-            expectation.labels[name],
-            _shown(error, error.total),
-            f"{_shown(error, error.bias, '+')} ± {_shown(error, error.bias_se)}",
-            _shown(error, error.noise),
-            _found(error, found.get(name)),
-        ]
-        for name, error in way.errors.items()
-    ]
+    rows = []
+    for name, error in way.errors.items():
+        bias = f"{_shown(error, error.bias, '+')} ± {_shown(error, error.bias_se)}"
+        cells = [expectation.labels[name], _shown(error, error.total), bias, _shown(error, error.noise)]
+        rows.append([*cells, _found(error, found.get(name))])
     header = ["expected of a single run", "error", "bias", "noise", "found"]
     if not headlines:
         header, rows = header[:-1], [row[:-1] for row in rows]

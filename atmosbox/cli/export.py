@@ -8,7 +8,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, RunFile, Verbose, beside, chosen, out_option, quiet_option
+from atmosbox.cli.option import Output, RunFile, beside
 from atmosbox.cli.terminal import say
 
 Exported = Literal["extxyz", "csv"]
@@ -18,17 +18,16 @@ Exported = Literal["extxyz", "csv"]
 @command(
     "atmosbox export temperature.nc --format extxyz",
     "atmosbox export lifting-dry.nc --format csv",
+    out="The file.  [default: beside FILE, by its name]",
+    quiet="Print only the path of the file.",
 )
 def export(
     file: RunFile,
-    out: Annotated[str | None, out_option("The file.  [default: beside FILE, by its name]")] = None,
+    to: Output,
     format: Annotated[
         Exported | None,
         typer.Option(help="extxyz holds the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."),
     ] = None,
-    force: Force = False,
-    quiet: Annotated[bool, quiet_option("Print only the path of the file.")] = False,
-    verbose: Verbose = False,
 ) -> None:
     """Write a run for OVITO, VMD or a spreadsheet.
 
@@ -40,7 +39,7 @@ def export(
 
     dataset = read(file)
     default = beside([file], format or "extxyz")
-    if format == "csv" or (format is None and Path(out or "").suffix.lower() == ".csv"):
+    if format == "csv" or (format is None and Path(to.out or "").suffix.lower() == ".csv"):
         from atmosbox.file.export import tables
 
         made = tables(dataset)
@@ -49,14 +48,12 @@ def export(
             stem = path.with_suffix("") if path.suffix.lower() == ".csv" else path
             return [stem.with_name(f"{stem.name}-{name}.csv") for name in made]
 
-        path = chosen(out, default, force=force, quiet=quiet, files=written)
-        paths = [check_writable(each, force) for each in written(path)]
+        paths = [check_writable(each, to.force) for each in written(to.path(default, written))]
         for place, content in zip(paths, made.values(), strict=True):
             write_whole(place, content)
         say("\n".join(map(str, paths)))
         return
-    path = chosen(out, default, force=force, quiet=quiet)
-    place, _ = named(path, format, get_args(Exported), force=force, what="box")
+    place, _ = named(to.path(default), format, get_args(Exported), force=to.force, what="box")
     from atmosbox.file.export import extended_xyz
 
     write_whole(place, extended_xyz(dataset))

@@ -6,13 +6,13 @@ import shlex
 from typing import Annotated
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Json, SceneName, Verbose
+from atmosbox.cli.option import Json, SceneName
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, width
 from atmosbox.text.table import story, table, wrapped
 
 
 @command("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json")
-def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbose = False) -> None:
+def info(scene: Annotated[str, SceneName], as_json: Json = False) -> None:
     """Show what a scene is about and what may be set."""
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time

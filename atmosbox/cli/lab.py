@@ -11,12 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from atmosbox import scenarios
-from atmosbox.cli import option
 from atmosbox.cli.application import command
-from atmosbox.cli.option import chosen, for_scene
+from atmosbox.cli.option import Language, Output, PageTheme, Sought, for_scene, switch
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import prints_to_stderr, say
 from atmosbox.errors import FileError
@@ -30,27 +27,17 @@ if TYPE_CHECKING:
     "atmosbox lab temperature",
     "atmosbox lab temperature --set molecules=800 --out warm.html",
     "atmosbox lab --all --out labs/",
+    out="The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]",
+    quiet="Print only the path of the page.",
 )
 def lab(
-    scene: Annotated[str | None, option.SceneName] = None,
-    values: option.Values = None,
-    config: option.Config = None,
-    source: option.Source = None,
-    seed: option.Seed = None,
-    engine: option.Engine = None,
-    accuracy: option.Accuracy = None,
+    sought: Sought,
+    to: Output,
     every: Annotated[
-        bool, typer.Option("--all", help="Write all scenes and an index of them into a folder, for a course.")
+        bool, switch("--all", "Write all scenes and an index of them into a folder, for a course.")
     ] = False,
-    out: Annotated[
-        str | None,
-        option.out_option("The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]"),
-    ] = None,
-    theme: option.PageTheme = "auto",
-    language: option.Language = "auto",
-    force: option.Force = False,
-    quiet: Annotated[bool, option.quiet_option("Print only the path of the page.")] = False,
-    verbose: option.Verbose = False,
+    theme: PageTheme = "auto",
+    language: Language = "auto",
 ) -> None:
     """Write a page in which a scene runs: the engine itself, in the browser.
 
@@ -59,28 +46,23 @@ def lab(
     into the page. In the page that live opens, all settings can be changed.
     """
     if every:
-        from atmosbox.cli.lab import save_all
         from atmosbox.simulation.link import check_nothing_changes
 
-        given = {"scene": scene, "--set": values, "--config": config, "--from": source, "--seed": seed}
-        given |= {"--engine": engine, "--accuracy": accuracy}
-        check_nothing_changes("what --all writes", given)
-
-        with prints_to_stderr(), progress("lab", quiet=quiet) as show:
-            made = save_all(Path(out or "labs"), theme=theme, language=language, force=force, progress=show)
+        check_nothing_changes("what --all writes", {"scene": sought.scene, **sought.changes()})
+        with prints_to_stderr(), progress("lab", quiet=to.quiet) as show:
+            made = save_all(Path(to.out or "labs"), theme=theme, language=language, force=to.force, progress=show)
         return say(str(made[0]))
-    asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
-    with progress("lab", quiet=quiet) as show:
+    asked = with_fewer_molecules(gather(sought, False))
+    with progress("lab", quiet=to.quiet) as show:
         prepared = checked(asked)
-        path = chosen(out, for_scene(prepared.scene, "-lab.html"), force=force, quiet=quiet)
         from atmosbox.file.output_path import check_writable
 
-        check_writable(path, force)
+        path = check_writable(to.path(for_scene(prepared.scene, "-lab.html")), to.force)
         show(0.0, "building the box")
         from atmosbox.lab import save_lab
 
         with prints_to_stderr():
-            written = save_lab(prepared, path, theme=theme, language=language, force=force, progress=show)
+            written = save_lab(prepared, path, theme=theme, language=language, force=to.force, progress=show)
     say(str(written))
 
 

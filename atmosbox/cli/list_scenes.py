@@ -4,30 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Json, Verbose
+from atmosbox.cli.option import Json, switch
 from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.text.report import scene_lines
 
 
 @command("atmosbox list", "atmosbox list --names", "atmosbox list --json", name="list")
 def list_scenes(
-    names: Annotated[bool, typer.Option("--names", help="Print only the names, one per line.")] = False,
+    names: Annotated[bool, switch("--names", "Print only the names, one per line.")] = False,
     as_json: Json = False,
-    verbose: Verbose = False,
 ) -> None:
     """List the scenes that come with atmosbox, in the order of teaching."""
     from atmosbox import scenarios
 
     found = scenarios.summaries()
     if as_json:
-        listed = [
-            {"name": name, "summary": each.sentence, "level": each.level, "minutes": each.minutes}
-            for name, each in found.items()
-        ]
-        say_json({"scenes": listed})
+        parts = ("name", "summary", "level", "minutes")
+        say_json({"scenes": [dict(zip(parts, (name, *each), strict=True)) for name, each in found.items()]})
     elif names:
         say("\n".join(found))
     else:

@@ -12,8 +12,8 @@ from typing import Annotated
 
 import typer
 
-from atmosbox.cli import option
 from atmosbox.cli.application import command
+from atmosbox.cli.option import Language, Sought, switch, text
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
 from atmosbox.errors import Option, SettingError
@@ -26,24 +26,14 @@ from atmosbox.errors import Option, SettingError
     "atmosbox live atmosphere --port 9000",
 )
 def live(
-    scene: Annotated[str | None, option.SceneName] = None,
-    values: option.Values = None,
-    config: option.Config = None,
-    source: option.Source = None,
-    seed: option.Seed = None,
-    engine: option.Engine = None,
-    accuracy: option.Accuracy = None,
-    port: Annotated[
-        int | None, typer.Option(metavar="N", help="Port of the page.  [default: the first free one from 8642 on]")
-    ] = None,
+    sought: Sought,
+    port: Annotated[int | None, text("N", "Port of the page.  [default: the first free one from 8642 on]")] = None,
     no_token: Annotated[
-        bool,
-        typer.Option("--no-token", help="Let anybody on this computer open the page, without the token."),
+        bool, switch("--no-token", "Let anybody on this computer open the page, without the token.")
     ] = False,
-    language: option.Language = "auto",
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
-    quiet: Annotated[bool, option.quiet_option("Print only the address.")] = False,
-    verbose: option.Verbose = False,
+    language: Language = "auto",
+    no_browser: Annotated[bool, switch("--no-browser", "Only print the address of the page.")] = False,
+    quiet: Annotated[bool, switch("--quiet", "Print only the address.")] = False,
 ) -> None:
     """Open a page in which a scene runs: change one thing at a time and see what happens.
 
@@ -52,8 +42,7 @@ def live(
     """
     if port is not None and not 1 <= port <= 65_535:
         raise SettingError("port", port, "is not a port from 1 to 65535", Option("port", 8642))
-    asked = with_fewer_molecules(gather(scene, values or (), config, source, seed, False, engine, accuracy))
-    prepared = checked(asked)
+    prepared = checked(with_fewer_molecules(gather(sought, False)))
 
     from atmosbox.lab.server import PORT, Server, ended
     from atmosbox.simulation.compilation import told

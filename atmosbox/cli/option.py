@@ -1,23 +1,28 @@
-"""The options and arguments that several commands share, and the default names of output files."""
+"""The options that several commands share, each declared once, and the names of output files."""
 
 from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import typer
 
-from atmosbox.cli.request import is_path
-from atmosbox.cli.terminal import tell
+from atmosbox.cli.terminal import say, say_json, tell
 from atmosbox.errors import FileError
 
-Format = Literal["png", "svg", "pdf"]
-"""The formats of a figure."""
-Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]
-"""What a figure is for."""
+
+def text(metavar: str, help: str, *names: str) -> Any:
+    """Return an option whose value is a text, with its names if they are not that of the parameter."""
+    return typer.Option(*names, metavar=metavar, help=help)
+
+
+def switch(name: str, help: str) -> Any:
+    """Return an option that is given or not."""
+    return typer.Option(name, help=help)
 
 
 def _completed(incomplete: str) -> list[str]:
@@ -27,16 +32,6 @@ def _completed(incomplete: str) -> list[str]:
     return [name for name in scenarios.names() if name.startswith(incomplete.replace("_", "-"))]
 
 
-def out_option(help: str) -> Any:
-    """Return the option ``--out`` of a command that writes a file."""
-    return typer.Option("--out", "-o", metavar="FILE", help=help)
-
-
-def quiet_option(help: str) -> Any:
-    """Return the option ``--quiet``."""
-    return typer.Option("--quiet", help=help)
-
-
 SceneName = typer.Argument(
     metavar="SCENE", help="A name that `atmosbox list` shows, or the path of your own: ./my_scene.py.",
     autocompletion=_completed, show_default=False,
@@ -44,41 +39,30 @@ SceneName = typer.Argument(
 RunFile = Annotated[str, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.")]
 Values = Annotated[
     list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="A setting with its unit, such as temperature=25degC; repeatable. --set may be left out.",
+    text(
+        "NAME=VALUE", "A setting with its unit, such as temperature=25degC; repeatable. --set may be left out.", "--set"
     ),
 ]
 ValuesOfAll = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="A setting for all runs; repeatable. --set may be left out."),
+    list[str] | None, text("NAME=VALUE", "A setting for all runs; repeatable. --set may be left out.", "--set")
 ]
-Config = Annotated[
-    str | None, typer.Option("--config", metavar="FILE", help="Settings, and perhaps the scene, from a TOML file.")
-]
-Source = Annotated[str | None, typer.Option("--from", metavar="FILE", help="Scene and settings of an earlier run.")]
-Seed = Annotated[
-    str | None,
-    typer.Option("--seed", metavar="N", help="Seed of the random numbers: the same seed, the same run."),
-]
+Seed = Annotated[str | None, text("N", "Seed of the random numbers: the same seed, the same run.")]
 Engine = Annotated[
     str | None,
-    typer.Option(
-        "--engine",
-        metavar="NAME[:OPTION=VALUE,...]",
-        help="The engine: exact, or an approximate one such as stepped:delta=0.02.  [default: that of the scene]",
+    text(
+        "NAME[:OPTION=VALUE,...]",
+        "The engine: exact, or an approximate one such as stepped:delta=0.02.  [default: that of the scene]",
     ),
 ]
 Accuracy = Annotated[
     str | None,
-    typer.Option(
-        "--accuracy",
-        metavar="TARGET",
-        help="Pick engine and settings by their measured errors: sketch, lecture, reference, or the largest error of "
+    text(
+        "TARGET",
+        "Pick engine and settings by their measured errors: sketch, lecture, reference, or the largest error of "
         "a run, such as 0.5K or 2%.",
     ),
 ]
+Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]
 Language = Annotated[
     Literal["auto", "en", "de", "es"],
     typer.Option("--language", help="Language of the page; auto takes that of the reader's browser."),
@@ -86,13 +70,81 @@ Language = Annotated[
 PageTheme = Annotated[
     Literal["auto", "light", "dark"], typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-Verbose = Annotated[bool, typer.Option("--verbose", help="Say more, with the traceback of a bug.")]
-Force = Annotated[bool, typer.Option("--force", help="Replace the file if there is one.")]
+DryRun = Annotated[bool, switch("--dry-run", "Show what would run, compute nothing and write nothing.")]
+Json = Annotated[bool, switch("--json", "Print one JSON object and nothing else.")]
+Verbose = Annotated[bool, switch("--verbose", "Say more, with the traceback of a bug.")]
+
+
+@dataclass(frozen=True)
+class Sought:
+    """The options that say what is to run: a scene, and where its settings come from."""
+
+    scene: Annotated[str | None, SceneName] = None
+    values: Values = None
+    config: Annotated[str | None, text("FILE", "Settings, and perhaps the scene, from a TOML file.")] = None
+    source: Annotated[str | None, text("FILE", "Scene and settings of an earlier run.", "--from")] = None
+    seed: Seed = None
+    engine: Engine = None
+    accuracy: Accuracy = None
+
+    def changes(self) -> dict[str, object]:
+        """Return what is given beside the scene, by the names of the options."""
+        named = {"values": "set", "source": "from"}
+        return {f"--{named.get(name, name)}": value for name, value in vars(self).items() if name != "scene"}
+
+
+@dataclass(frozen=True)
+class Output:
+    """The options of a command that writes a file; what ``--out`` and ``--quiet`` mean is said by each command."""
+
+    out: Annotated[str | None, text("FILE", "", "--out", "-o")] = None
+    force: Annotated[bool, switch("--force", "Replace the file if there is one.")] = False
+    quiet: Annotated[bool, switch("--quiet", "")] = False
+
+    def path(self, default: Path, files: Callable[[Path], Sequence[Path]] = lambda path: [path]) -> Path:
+        """Return the path of the file: the one that was asked for, or else the default, with a number if it exists.
+
+        `files` returns the files that are written for a path, if there are several.
+        """
+        if self.out is not None:
+            return Path(self.out)
+        return self.numbered(default, lambda path: any(map(os.path.lexists, files(path))))
+
+    def numbered(self, default: Path, taken: Callable[[Path], bool]) -> Path:
+        """Return the default path, with a number if it is taken and must not be replaced, and say so."""
+        from atmosbox.file.output_path import unused
+
+        path = default if self.force else unused(default, taken)
+        self.say_number(default, path)
+        return path
+
+    def say_number(self, default: Path, path: Path) -> None:
+        """Say that the file has a number in its name, if it has."""
+        if path != default and not self.quiet:
+            tell(f"note: the name {default} is in use, so this file is {path}")
+
+
+@dataclass(frozen=True)
+class Result(Output):
+    """The options of a command that writes a file and prints what is in it, as text or as JSON."""
+
+    as_json: Json = False
+
+    def say(self, path: Path, record: Mapping[str, Any], lines: Sequence[str]) -> None:
+        """Print the result as JSON, as the path alone, or as text."""
+        if self.as_json:
+            say_json(record)
+        else:
+            say(str(path) if self.quiet else "\n".join(lines))
 
 
 FIGURES = (".png", ".svg", ".pdf")
 _LONGEST = 100  # characters of a name that is made of the names of all files
+
+
+def is_path(scene: str) -> bool:
+    """Return whether a scene is given by the path of its file rather than by its name."""
+    return scene.endswith(".py") or "/" in scene or os.sep in scene
 
 
 def for_scene(scene: str, ending: str = ".nc") -> Path:
@@ -120,31 +172,6 @@ def beside(files: Sequence[str], kind: str) -> Path:
     first = Path(files[0])
     stem = "-and-".join(Path(file).stem for file in files)[:_LONGEST]
     return first.with_name(f"{stem}.{kind}")
-
-
-def chosen(
-    out: str | None, default: Path, *, force: bool, quiet: bool, files: Callable[[Path], Sequence[Path]] | None = None
-) -> Path:
-    """Return the path of the output file: the one that was asked for, or else the default, with a number if it exists.
-
-    `files` returns the files that are written for a path, if there are several.
-    """
-    if out is not None:
-        return Path(out)
-    if force:
-        return default
-    from atmosbox.file.output_path import unused
-
-    path = unused(default, lambda each: any(map(os.path.lexists, files(each) if files else (each,))))
-    if not quiet:
-        say_number(default, path)
-    return path
-
-
-def say_number(default: Path, path: Path) -> None:
-    """Say that the file has a number in its name, if it has."""
-    if path != default:
-        tell(f"note: the name {default} is in use, so this file is {path}")
 
 
 def netcdf_name(path: Path) -> Path:

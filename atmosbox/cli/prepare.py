@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Json, Verbose, quiet_option
+from atmosbox.cli.option import Json, switch
 from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.errors import AtmosboxError, EngineError
 from atmosbox.text.progress import progress
@@ -24,12 +24,11 @@ def prepare(
         list[str] | None,
         typer.Argument(metavar="[SCENE]...", help="Which scenes; all that come with atmosbox if none is named."),
     ] = None,
-    every_engine: Annotated[
-        bool, typer.Option("--all", help="Also for the engines stepped and dsmc, where a scene can use them.")
+    every: Annotated[
+        bool, switch("--all", "Also for the engines stepped and dsmc, where a scene can use them.")
     ] = False,
     as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print only the folder of the machine code.")] = False,
-    verbose: Verbose = False,
+    quiet: Annotated[bool, switch("--quiet", "Print only the folder of the machine code.")] = False,
 ) -> None:
     """Compile the engine for all scenes, on all cores.
 
@@ -45,7 +44,7 @@ def prepare(
     names = list(scenes or scenarios.names())
     for name in names:
         scenarios.load(name)
-    asked = [(name, engine) for name in names for engine in _engines(name, every_engine)]
+    asked = [(name, engine) for name in names for engine in _engines(name, every)]
     began = time.perf_counter()
     seconds: dict[Work, float] = {}
     with progress("prepare", quiet=quiet or as_json) as show:

@@ -10,9 +10,10 @@ import os
 import re
 import shlex
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from atmosbox.cli.option import Sought, is_path
 from atmosbox.cli.terminal import prints_to_stderr, tell
 from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError, shown
 from atmosbox.scene.settings import Value
@@ -96,19 +97,17 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
         fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
         raise refusal(key, "outside the table [settings]", fix)
     settings = content.get("settings", {})
-    words: dict[str, str | None] = {}
-    for key, (problem, fix) in _WORDS.items():
-        word = content.get(key)
-        if word is not None and not (isinstance(word, str) and word.strip()):
-            raise refusal(key, problem, fix)
-        words[key] = word and word.strip()
+    words = {key: str(content[key]).strip() for key in _WORDS if key in content}
+    for key, word in words.items():
+        if not (word and isinstance(content[key], str)):
+            raise refusal(key, *_WORDS[key])
     if not isinstance(settings, dict):
         raise refusal("settings", "that is not a table", "write a line [settings], and below it the settings")
     for key, value in settings.items():
         if not isinstance(value, Value):
             fix = 'give one number, true, false or a text in quotes, such as "25degC"'
             raise refusal(key, "that is not a number, switch or text", fix)
-    return Asked(words["scene"] or "", settings, words["engine"], accuracy=words["accuracy"])
+    return Asked(words.get("scene", ""), settings, words.get("engine"), accuracy=words.get("accuracy"))
 
 
 def _toml(raw: bytes, where: str) -> dict[str, Any]:
@@ -130,27 +129,18 @@ def _toml(raw: bytes, where: str) -> dict[str, Any]:
 WARM = 100.0  # degC: above it, a number without a unit may have been meant in kelvin
 
 
-def gather(
-    scene: str | None,
-    values: Sequence[str] = (),
-    config: str | None = None,
-    source: str | None = None,
-    seed: str | None = None,
-    save_molecules: bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-) -> Asked:
+def gather(sought: Sought, save_molecules: bool | None = None) -> Asked:
     """Return the request for a run that the whole command line makes; its settings are not yet checked.
 
     If a setting has two values, the later in this list counts: ``--from``, ``--config``, ``--set``, ``--seed``. The
-    scene is None if one of the files names it.
+    scene may be named by one of the files.
 
     Examples
     --------
-    >>> gather("lifting-dry", ["temperature=25degC"], seed="7").settings
+    >>> gather(Sought("lifting-dry", ["temperature=25degC"], seed="7")).settings
     {'temperature': '25degC', 'seed': '7'}
     """
-    scene = scene or ""
+    scene, accuracy, source = sought.scene or "", sought.accuracy, sought.source
     settings: dict[str, Any] = {}
     of_file: str | None = None
     if source is not None:
@@ -158,14 +148,13 @@ def gather(
         scene = _agreed(scene, run.scene, "--from", source, FileError)
         settings, of_file = run.settings, run.engine
         save_molecules = run.save_molecules if save_molecules is None else save_molecules
-    if config is not None:
-        asked = load_config(config)
-        scene = _agreed(scene, asked.scene, "--config", config, ConfigError)
+    if sought.config is not None:
+        asked = load_config(sought.config)
+        scene = _agreed(scene, asked.scene, "--config", sought.config, ConfigError)
         settings, of_file = _over(settings, asked.settings), asked.engine or of_file
         accuracy = accuracy or asked.accuracy
-    settings = _over(settings, assignments(values))
-    if seed is not None:
-        settings = _over(settings, {"seed": seed})
+    settings = _over(settings, assignments(sought.values or ()))
+    settings = _over(settings, {} if sought.seed is None else {"seed": sought.seed})
     if not scene:
         raise UnknownSceneError(
             "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
@@ -173,7 +162,7 @@ def gather(
     if accuracy is not None and source is not None:
         problem = f"picks engine and settings, and so does --from {shlex.quote(source)}"
         raise SettingError("accuracy", accuracy, problem, "leave one of them out")
-    return Asked(scene, settings, engine or of_file, save_molecules, accuracy)
+    return Asked(scene, settings, sought.engine or of_file, save_molecules, accuracy)
 
 
 def checked(asked: Asked) -> Prepared:
@@ -203,11 +192,6 @@ def with_fewer_molecules(asked: Asked) -> Asked:
     told = " and ".join(f"{name}={value}" for name, value in few.items())
     tell(f"note: the page begins with {told}, fewer than a run has; give --set molecules=N for more")
     return asked._replace(settings={**asked.settings, **few}).for_a_page()
-
-
-def is_path(scene: str) -> bool:
-    """Return whether a scene is given by the path of its file rather than by its name."""
-    return scene.endswith(".py") or "/" in scene or os.sep in scene
 
 
 def _earlier(path: str) -> Asked:

@@ -8,18 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import (
-    Engine,
-    Force,
-    SceneName,
-    Seed,
-    ValuesOfAll,
-    Verbose,
-    chosen,
-    for_scene,
-    out_option,
-    quiet_option,
-)
+from atmosbox.cli.option import Engine, Output, SceneName, Seed, Sought, ValuesOfAll, for_scene, switch
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import prints_to_stderr, say, tell
 from atmosbox.text.progress import progress
@@ -35,14 +24,15 @@ if TYPE_CHECKING:
     "atmosbox sheet temperature --lab",
     "atmosbox sheet temperature --language de",
     "atmosbox sheet ./my_scene.py --format html",
+    out="The sheet.  [default: SCENE-sheet.pdf, or SCENE-answers.pdf, in this folder]",
+    quiet="Show no progress and no remarks.",
 )
 def sheet(
     scene: Annotated[str, SceneName],
-    answers: Annotated[
-        bool, typer.Option("--answers", help="Make the runs, fill in the table and answer the questions.")
-    ] = False,
+    to: Output,
+    answers: Annotated[bool, switch("--answers", "Make the runs, fill in the table and answer the questions.")] = False,
     lab: Annotated[
-        bool, typer.Option("--lab", help="Use pages instead of commands: write one for each run, and name its buttons.")
+        bool, switch("--lab", "Use pages instead of commands: write one for each run, and name its buttons.")
     ] = False,
     values: ValuesOfAll = None,
     seed: Seed = None,
@@ -53,12 +43,6 @@ def sheet(
         Literal["pdf", "html", "md"] | None,
         typer.Option(help="The format, where the name of the file does not say it."),
     ] = None,
-    out: Annotated[
-        str | None, out_option("The sheet.  [default: SCENE-sheet.pdf, or SCENE-answers.pdf, in this folder]")
-    ] = None,
-    force: Force = False,
-    quiet: Annotated[bool, quiet_option("Show no progress and no remarks.")] = False,
-    verbose: Verbose = False,
 ) -> None:
     """Make a worksheet to hand out: predict, run, measure, ask why.
 
@@ -67,22 +51,21 @@ def sheet(
     """
     from atmosbox import sheet as sheets
 
-    asked = gather(scene, values or (), seed=seed, engine=engine)
+    asked = gather(Sought(scene, values, seed=seed, engine=engine))
     if lab:
         asked = asked.for_a_page()
     ending = "" if language == "en" else f"-{language}"
     default = for_scene(scene, f"-{'answers' if answers else 'sheet'}{ending}.{format or 'pdf'}")
-    path = chosen(out, default, force=force, quiet=quiet)
-    path = sheets.check(path, format, paper=paper, force=force)
-    with prints_to_stderr(), progress(scene, quiet=quiet) as show:
+    path = sheets.check(to.path(default), format, paper=paper, force=to.force)
+    with prints_to_stderr(), progress(scene, quiet=to.quiet) as show:
         made = sheets.worksheet(
             asked.scene, asked.settings, engine=asked.engine, answers=answers, lab=lab, language=language, progress=show
         )
-        pages = _pages(made, path.parent, force) if lab else []
-    if not quiet:
+        pages = _pages(made, path.parent, to.force) if lab else []
+    if not to.quiet:
         for sentence in made.disagreements:
             tell(f"warning: {sentence}")
-    say(str(sheets.save(made, path, paper=paper, force=force)))
+    say(str(sheets.save(made, path, paper=paper, force=to.force)))
     for page in pages:
         say(str(page))
 

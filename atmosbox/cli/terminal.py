@@ -11,7 +11,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from typing import Never, ParamSpec, TypeVar
+from typing import Any, Never, ParamSpec, TypeVar
 
 import typer
 
@@ -39,10 +39,6 @@ def width() -> int:
     """Return the number of columns that the result may take: those of the terminal, or COLUMNS if that is set."""
     tty = sys.stdout is not None and sys.stdout.isatty()
     return shutil.get_terminal_size().columns if tty or os.environ.get("COLUMNS", "").isdecimal() else ENDLESS
-
-
-def _listed(given: object) -> list[object]:
-    return list(given) if isinstance(given, list) else [] if given is None else [given]
 
 
 def _reason(error: Exception) -> str:
@@ -132,7 +128,9 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
 
             if kwargs.get("verbose"):
                 tell(traceback.format_exc())
-            read = [str(file) for name in ("file", "files", "resume", "source") for file in _listed(kwargs.get(name))]
+            options: dict[str, Any] = kwargs
+            given = [*(options.get(name) for name in ("file", "resume", "source")), *options.get("files", ())]
+            read = [str(file) for file in given if file is not None]
             scene = str(kwargs.get("scene") or "")
             own = scenarios.place(error) or (scene if scene.endswith(".py") else None)
             said = f"This is a bug in atmosbox ({_reason(error)})"

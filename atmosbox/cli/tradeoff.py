@@ -4,24 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import (
-    Force,
-    Json,
-    SceneName,
-    ValuesOfAll,
-    Verbose,
-    chosen,
-    for_scene,
-    netcdf_name,
-    out_option,
-    quiet_option,
-)
-from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
+from atmosbox.cli.option import Result, SceneName, ValuesOfAll, for_scene, netcdf_name, text
+from atmosbox.cli.terminal import INTERRUPTED, tell, width
 from atmosbox.errors import Option
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
@@ -35,20 +24,16 @@ _COLUMNS = ("wall_seconds", "engine_seconds", "cost", "members", "energy_drift",
 @command(
     "atmosbox tradeoff lifting-dry",
     "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
+    out="The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]",
+    quiet="Print only the path of the file.",
 )
 def tradeoff(
     ctx: typer.Context,
     scene: Annotated[str, SceneName],
+    to: Result,
     values: ValuesOfAll = None,
-    budget: Annotated[str, typer.Option(metavar="TIME", help="How long to measure.")] = "40s",
-    seed: Annotated[str | None, typer.Option(metavar="N", help="The first seed.  [default: 1]")] = None,
-    out: Annotated[
-        str | None, out_option("The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]")
-    ] = None,
-    force: Force = False,
-    as_json: Json = False,
-    quiet: Annotated[bool, quiet_option("Print only the path of the file.")] = False,
-    verbose: Verbose = False,
+    budget: Annotated[str, text("TIME", "How long to measure.")] = "40s",
+    seed: Annotated[str | None, text("N", "The first seed.  [default: 1]")] = None,
 ) -> None:
     """Measure speed against accuracy: errors and seconds of a scene on several engines and settings.
 
@@ -70,33 +55,20 @@ def tradeoff(
     def written(path: Path) -> list[Path]:
         return [path, path.with_suffix(".csv"), path.with_suffix(".png")]
 
-    default = for_scene(scene, "-tradeoff.nc")
-    path = check_writable(netcdf_name(chosen(out, default, force=force, quiet=quiet, files=written)), force)
-    files = [check_writable(each, force) for each in written(path)]
-    with progress(scene, quiet=quiet) as show:
-        found = measure(
-            scene,
-            settings=assignments(values or ()),
-            budget=seconds,
-            seed=first,
-            progress=show,
-            command=typed(ctx),
-            out=path,
-            force=force,
-            note=None if quiet else lambda text: tell(f"note: {text}"),
-        )
+    path = check_writable(netcdf_name(to.path(for_scene(scene, "-tradeoff.nc"), written)), to.force)
+    files = [check_writable(each, to.force) for each in written(path)]
+    with progress(scene, quiet=to.quiet) as show:
+        how: dict[str, Any] = {"budget": seconds, "seed": first, "out": path, "force": to.force, "command": typed(ctx)}
+        note = None if to.quiet else lambda remark: tell(f"note: {remark}")
+        found = measure(scene, settings=assignments(values or ()), progress=show, note=note, **how)
     records = rows(found)
     cells = [["" if cell != cell else cell for cell in record.values()] for record in records]  # NaN is left out
     write_whole(files[1], as_csv([list(records[0]), *cells]))
-    save(found, files[2], force=force)
-    if as_json:
-        best = recommended(found)
-        way = None if best is None else str(found.rung.values[best[0]])
-        say_json({"scene": scene, "files": [str(file) for file in files], "recommended": way, "rungs": records})
-    elif quiet:
-        say(str(path))
-    else:
-        say("\n".join([*lines(found, width()), "", *(f"file: {file}" for file in files)]))
+    save(found, files[2], force=to.force)
+    best = recommended(found)
+    way = None if best is None else str(found.rung.values[best[0]])
+    about = {"scene": scene, "files": list(map(str, files)), "recommended": way, "rungs": records}
+    to.say(path, about, [*lines(found, width()), "", *(f"file: {file}" for file in files)])
     if found.attrs["atmosbox_status"] == "interrupted":
         tell("stopped: what was measured is kept")
         raise typer.Exit(INTERRUPTED)
@@ -145,7 +117,7 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
         head = f"recommended, the cheapest within {WANTED.limits}" if best[1] else "the most accurate"
         words += [f"{head}: {found.rung.values[best[0]]}, {number(found.engine_seconds.values[best[0]], 2)} s"]
     words += [f"{why}: {'; '.join(labels)}" for why, labels in missing.items()]
-    return [*table(header, body, columns), "", *(line for text in words for line in wrapped(text, columns))]
+    return [*table(header, body, columns), "", *(line for said in words for line in wrapped(said, columns))]
 
 
 def _unit(found: xr.Dataset, name: str) -> str:

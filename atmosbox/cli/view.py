@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, Language, PageTheme, Verbose, beside, chosen, out_option, quiet_option
+from atmosbox.cli.option import Language, Output, PageTheme, beside
 from atmosbox.cli.terminal import say
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
@@ -19,17 +19,16 @@ MOST = 2
     "atmosbox view temperature.nc",
     "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
     "atmosbox view temperature.nc --language es --force",
+    out="The page.  [default: beside FILE, by its name]",
+    quiet="Print only the path of the page.",
 )
 def view(
     files: Annotated[
         list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two that kept their molecules.")
     ],
-    out: Annotated[str | None, out_option("The page.  [default: beside FILE, by its name]")] = None,
+    to: Output,
     theme: PageTheme = "auto",
     language: Language = "auto",
-    force: Force = False,
-    quiet: Annotated[bool, quiet_option("Print only the path of the page.")] = False,
-    verbose: Verbose = False,
 ) -> None:
     """Show the molecules of a run in three dimensions, and its graphs at the same time of the run.
 
@@ -38,16 +37,15 @@ def view(
     """
     if len(files) > MOST:
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")
-    with progress("view", quiet=quiet) as show:
+    with progress("view", quiet=to.quiet) as show:
         show(0.0, "reading the molecules")
         from atmosbox.file.netcdf import read
         from atmosbox.file.output_path import check_writable
 
-        path = chosen(out, beside(files, "html"), force=force, quiet=quiet)
-        check_writable(path, force)
+        path = check_writable(to.path(beside(files, "html")), to.force)
         runs = [read(file) for file in files]
         show(0.4, "writing the page")
         from atmosbox.page import save
 
-        written = save(runs, path, theme=theme, language=language, force=force)
+        written = save(runs, path, theme=theme, language=language, force=to.force)
     say(str(written))

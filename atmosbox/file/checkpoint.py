@@ -45,28 +45,10 @@ class Checkpoint:
 
     Attributes
     ----------
-    wanted
-        The path that was asked for.
     path, part
         The file of the finished run, and the file of the run so far; `begin` may still change a numbered name.
     stale
         Whether an earlier run left a part there, which the first writing will replace.
-
-    Raises
-    ------
-    FileError
-        If the file could not be written there, for one of the reasons of `atmosbox.file.output_path.check_writable`.
-
-    Examples
-    --------
-    >>> import tempfile, xarray
-    >>> from atmosbox.file.netcdf import read
-    >>> from atmosbox.file.provenance import global_attributes
-    >>> so_far = xarray.Dataset(attrs=global_attributes({}, title="Half a box", command="a test"))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     checkpoint = Checkpoint(f"{folder}/run.nc", every_seconds=0.0)
-    ...     checkpoint(lambda: so_far), read(checkpoint.part).title, checkpoint.finish(so_far).name
-    (True, 'Half a box', 'run.nc')
     """
 
     def __init__(

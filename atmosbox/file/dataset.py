@@ -24,28 +24,9 @@ _LABELS = {"wall": ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high"), "a
 def headline_variables(headline: Any) -> dict[str, xr.Variable]:
     """Return the variables that hold one headline: its value, standard error, closed-form answer and tolerance.
 
-    Parameters
-    ----------
-    headline
-        An `atmosbox.scene.headline.Headline`, in SI units. If the value is None, it becomes NaN; other parts that are
-        None get no variable.
-
-    Returns
-    -------
-    dict
-        Variables without dimensions by their names; the attribute ``display_units`` keeps the unit in which
-        a table shows them. If the headline has a verdict, ``misfit_allowed_by_chance`` and ``misfit_allowed_as_known``
-        say how far the value is expected to be from theory, and ``within_error`` whether it is that near: yes, yes with
-        the stated model error, or no. ``possible_range`` is the range in which the value must be; ``resolved`` is 0 if
-        the run is too small to measure it. ``program`` is another program that computed the value.
-
-    Examples
-    --------
-    >>> from atmosbox.scene.headline import Headline
-    >>> warm = Headline("final", 300.0, 0.5, None, 0.0, "", "K", "degC", "temperature at the end")
-    >>> held = headline_variables(warm)
-    >>> {name: float(number) for name, number in held.items()}, held["final"].attrs["display_units"]
-    ({'final': 300.0, 'final_se': 0.5, 'final_tolerance': 0.0}, 'degC')
+    A value of None becomes NaN; other parts that are None get no variable. Attributes keep the unit in which a table
+    shows them and, if the headline has them, how far it may be from theory, whether it is that near, its possible
+    range, whether the run is large enough to measure it (``resolved``), and another program that computed it.
     """
     parent = Variable(headline.name, (), headline.unit, headline.label, comment=headline.reason or None)
     stated = {
@@ -162,21 +143,7 @@ def extended(
 ) -> xr.Dataset:
     """Return a dataset with more variables, such as those that theory predicts, and with headlines.
 
-    Parameters
-    ----------
-    run
-        A dataset from `dataset`; it is not changed.
-    frames, headlines, own
-        As for `dataset`; a variable of the same name is replaced.
-
-    Raises
-    ------
-    KeyError
-        If a name is not declared, or a dimension lacks its coordinate.
-    ValueError
-        If a shape is not the declared one, or a headline has the name of a variable.
-    EngineError
-        If a value of a ledger variable or a count is not finite.
+    Arguments and errors are those of `dataset`; a variable of the same name is replaced.
 
     Examples
     --------

@@ -92,30 +92,27 @@ def tables(dataset: xr.Dataset) -> dict[str, bytes]:
     for dimension in map(str, dataset.dims):
         if dimension not in dataset.coords or dimension in (*_LABELLED, "member"):
             continue
-        columns = [_headed(dataset[dimension], "")]
+        columns = [_headed(dataset[dimension])]
         for name, values in dataset.variables.items():
             extra = [dim for dim in values.dims if dim != dimension]
             if name == dimension or dimension not in values.dims or not set(extra) <= set(_LABELLED):
                 continue
             if not extra:
-                columns.append(_headed(dataset[name], ""))
+                columns.append(_headed(dataset[name]))
             elif len(extra) == 1:
                 labels = dataset[extra[0]].values
-                columns += [_headed(dataset[name].isel({extra[0]: k}), f" {label}") for k, label in enumerate(labels)]
+                columns += [_headed(dataset[name].isel({extra[0]: k}), label) for k, label in enumerate(labels)]
         if len(columns) > 1:
             head, body = zip(*columns, strict=True)
             made[dimension] = as_csv([head, *zip(*body, strict=True)])
     return made
 
 
-def _headed(values: xr.DataArray, which: str) -> tuple[str, list[object]]:
+def _headed(values: xr.DataArray, which: object = "") -> tuple[str, list[object]]:
     """Return a column: its heading and its cells, empty for values that are not finite."""
     unit = str(values.attrs.get("units", ""))
-    shown = f" [{unit}]" if unit not in ("", "1") else ""
-    cells = [
-        "" if isinstance(cell, float) and not np.isfinite(cell) else cell for cell in np.asarray(values.values).tolist()
-    ]
-    return f"{values.name}{which}{shown}", cells
+    name = f"{values.name}{which and f' {which}'}{f' [{unit}]' if unit not in ('', '1') else ''}"
+    return name, ["" if isinstance(each, float) and not np.isfinite(each) else each for each in values.values.tolist()]
 
 
 def _headlines(dataset: xr.Dataset) -> bytes:

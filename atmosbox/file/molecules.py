@@ -13,27 +13,16 @@ from atmosbox.file.provenance import parameters
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOLECULES = {
-    "position": "molecule_position",
-    "speed": "molecule_speed",
-    "mass": "molecule_mass",
-    "diameter": "molecule_diameter",
-    "side": "box_side",
-    "walls": "wall_law",
-}
-_DISCS = {
-    "position": "disc_position",
-    "speed": "disc_velocity",
-    "mass": "disc_mass",
-    "diameter": "disc_diameter",
-    "side": "box_length",
-}
+_MOLECULES = {each: f"molecule_{each}" for each in ("position", "speed", "mass", "diameter")}
+_MOLECULES |= {"side": "box_side", "walls": "wall_law"}
+_DISCS = {"position": "disc_position", "speed": "disc_velocity", "mass": "disc_mass", "diameter": "disc_diameter"}
+_DISCS["side"] = "box_length"
 _OPTIONAL = {
-    "wall_temperature": "wall_temperature",
     "liquid": "liquid_molecule_count",
     "rained": "rained_molecule_count",
-    "neighbours": "molecule_neighbour_count",
+    "wall_temperature": "wall_temperature",
 }
+_OPTIONAL["neighbours"] = "molecule_neighbour_count"
 """The variables of the fields of `Molecules`, for molecules and for discs."""
 
 Floats = NDArray[np.floating]

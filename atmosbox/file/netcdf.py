@@ -62,31 +62,7 @@ def fill(file: netCDF4.Dataset, dataset: xr.Dataset) -> None:
 
 
 def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
-    """Write a dataset to a netCDF file, completely or not at all.
-
-    Parameters
-    ----------
-    dataset
-        A dataset of `atmosbox.file.dataset.dataset`, with the attributes of
-        `atmosbox.file.provenance.global_attributes`.
-    path
-        The file.
-    force
-        Whether it may replace a file.
-
-    Returns
-    -------
-    pathlib.Path
-        The file that was written.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written there, for one of the reasons of `atmosbox.file.output_path.check_writable`.
-    DiskFullError
-        If the disk is full; no part of the file is left behind.
-    KeyError
-        If the dataset lacks the attribute ``atmosbox_parameters``.
+    """Write a dataset to a netCDF file, completely or not at all; `force` lets it replace a file.
 
     Examples
     --------
@@ -104,16 +80,6 @@ def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
 
 def read(path: AnyPath) -> xr.Dataset:
     """Load the run in a file into memory; the file is closed again.
-
-    Parameters
-    ----------
-    path
-        A file that atmosbox wrote.
-
-    Returns
-    -------
-    xarray.Dataset
-        The run.
 
     Raises
     ------
@@ -154,10 +120,8 @@ def read(path: AnyPath) -> xr.Dataset:
                 raise FileError(f"{source} was written by another program: {fix}.")
             written = str(attributes.get("atmosbox_format", FORMAT))
             if written != str(FORMAT):
-                raise FileError(
-                    f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}: "
-                    "type pip install --upgrade atmosbox."
-                )
+                problem = f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}"
+                raise FileError(f"{problem}: type pip install --upgrade atmosbox.")
             check_valid(file, source)
         return xr.load_dataset(source, engine="netcdf4", decode_times=False, drop_variables=[STATE])
     except FileError:
@@ -167,17 +131,7 @@ def read(path: AnyPath) -> xr.Dataset:
 
 
 def read_state(path: AnyPath) -> NDArray[np.uint8] | None:
-    """Return the bytes of the saved state in a file that `read` can read; None if the file holds no state.
-
-    Examples
-    --------
-    >>> import tempfile, xarray
-    >>> from atmosbox.file.provenance import global_attributes
-    >>> attributes = global_attributes({"scene": "temperature"}, title="A box", command="a test")
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     print(read_state(write(xarray.Dataset(attrs=attributes), f"{folder}/run.nc")))
-    None
-    """
+    """Return the bytes of the saved state in a file that `read` can read; None if the file holds no state."""
     import netCDF4
 
     with netCDF4.Dataset(path) as file:

@@ -26,13 +26,7 @@ class BusyError(FileError):
 
 
 def host() -> str:
-    """Return the name of this computer.
-
-    Examples
-    --------
-    >>> bool(host())
-    True
-    """
+    """Return the name of this computer."""
     return socket.gethostname() or "localhost"
 
 
@@ -86,28 +80,22 @@ class OutputLock:
             opened = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
             raise FileError(f"{self.path} cannot be made ({error.strerror})", *ELSEWHERE) from error
-        try:
+        with contextlib.ExitStack() as unless_taken:
+            unless_taken.callback(os.close, opened)
             held = hold(opened)
             owner = _owner(os.read(opened, 1000))
             if held is False or (owner and self._lives(owner, held is True, opened)):
                 whose = f"process {owner['pid']} on {owner['host']} since {owner['since']}" if owner else "another run"
-                raise BusyError(
-                    f"{path} is being written by {whose}",
-                    "wait for it, or ",
-                    *ANOTHER_NAME,
-                    f"; if it runs no more, remove {self.path}",
-                )
+                again = f"; if it runs no more, remove {self.path}"
+                raise BusyError(f"{path} is being written by {whose}", "wait for it, or ", *ANOTHER_NAME, again)
             with contextlib.suppress(OSError):
                 if os.path.samestat(os.fstat(opened), os.stat(self.path)):
                     os.ftruncate(opened, 0)
                     os.lseek(opened, 0, os.SEEK_SET)
                     os.write(opened, json.dumps({"pid": os.getpid(), "host": host(), "since": moment()}).encode())
-                    taken, opened = opened, -1
-                    return taken
-            return None
-        finally:
-            if opened >= 0:
-                os.close(opened)
+                    unless_taken.pop_all()
+                    return opened
+        return None
 
     def _lives(self, owner: dict[str, Any], held: bool, opened: int) -> bool:
         """Return whether the owner that the file names may still be running."""

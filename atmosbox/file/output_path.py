@@ -25,9 +25,7 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the temporary name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
 _NUMBERS = itertools.count()
-LEFT_OVER = (
-    3600.0  # seconds after which a temporary file of another computer is taken as left by a program that was killed
-)
+LEFT_OVER = 3600.0  # seconds after which a temporary file of another computer counts as left by a killed program
 
 
 def named(
@@ -104,13 +102,7 @@ def part_path(path: AnyPath) -> Path:
 
 
 def run_is_there(path: AnyPath) -> bool:
-    """Return whether there is the file of a run, finished or not.
-
-    Examples
-    --------
-    >>> run_is_there("no/such/folder/run.nc")
-    False
-    """
+    """Return whether there is the file of a run, finished or not."""
     return os.path.lexists(path) or os.path.lexists(part_path(path))
 
 
@@ -164,11 +156,6 @@ def clear(path: Path, *, everything: bool = False) -> None:
                 old.unlink(missing_ok=True)
 
 
-def temporary_path(path: Path) -> Path:
-    """Return the path of the temporary file, whose name identifies the computer and the process that writes."""
-    return path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
-
-
 def _here() -> str:
     """Return eight hexadecimal digits that identify this computer."""
     return f"{zlib.crc32(host().encode()):08x}"
@@ -191,7 +178,8 @@ def whole_file(path: Path) -> Iterator[Path]:
     ['a.txt']
     """
     clear(path)
-    temporary = temporary_path(path)
+    # its name identifies the computer and the process that writes
+    temporary = path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
     try:
         yield temporary
         # without this, the file can have its final name and yet be empty after a power failure
@@ -210,14 +198,6 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
     """Write a file, which `check_writable` or `named` has checked, whole or not at all.
 
     A file that was there before is kept if the disk is full.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_whole(Path(folder, "a.txt"), b"air")
-    ...     Path(folder, "a.txt").read_text()
-    'air'
     """
     with whole_file(path) as temporary:
         temporary.write_bytes(content)

@@ -20,13 +20,7 @@ FORMAT = 1
 
 
 def moment() -> str:
-    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that a repeated run can give an identical file.
-
-    Examples
-    --------
-    >>> len(moment())
-    20
-    """
+    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that a repeated run can give an identical file."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         now = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
@@ -67,32 +61,18 @@ def global_attributes(
         What the file contains, in one line.
     command
         The command that made the file, as typed, or its words.
-    comment
-        The assumptions of the scene.
-    references
-        The literature that the scene uses.
+    comment, references
+        The assumptions of the scene, and the literature that it uses.
     panels
         The panels of the scene's figure, as JSON.
     status
         ``complete``, ``partial`` or ``interrupted``.
 
-    Returns
-    -------
-    dict
-        The global attributes by their names.
-
-    Raises
-    ------
-    SettingError
-        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
-
     Examples
     --------
-    >>> made = global_attributes(
-    ...     {"scene": "temperature", "engine": "exact"}, title="A box", command="atmosbox run temperature"
-    ... )
+    >>> made = global_attributes({"scene": "temperature"}, title="A box", command="atmosbox run temperature")
     >>> made["Conventions"], made["atmosbox_parameters"]
-    ('CF-1.11', '{"scene": "temperature", "engine": "exact"}')
+    ('CF-1.11', '{"scene": "temperature"}')
     """
     version = str(parameters.get("version", __version__))
     engine = parameters.get("engine")

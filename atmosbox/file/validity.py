@@ -33,13 +33,7 @@ _JSON: dict[str, type | tuple[type, ...]] = {
 
 
 def free_memory() -> float:
-    """Return the number of bytes of free memory; infinite if the system does not say.
-
-    Examples
-    --------
-    >>> free_memory() > 1e6
-    True
-    """
+    """Return the number of bytes of free memory; infinite if the system does not say."""
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
@@ -56,16 +50,13 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     variable; and a variable of atmosbox its dimensions, its units, and numbers or text as it is declared.
     """
     declared = float(sum(_bytes(each) for each in file.variables.values()))
+    much = f"{declared / 1e9:.3g} GB of numbers"
     if declared > max(SMALL, DENSEST * source.stat().st_size):
-        raise FileError(
-            f"{source} declares {declared / 1e9:.3g} GB of numbers, more than a file of its size can hold: it is "
-            "damaged, so run the scene again."
-        )
+        problem = f"{source} declares {much}, more than a file of its size can hold"
+        raise FileError(f"{problem}: it is damaged, so run the scene again.")
     if declared > max(SMALL, 0.5 * free_memory()):
-        raise FileError(
-            f"{source} holds {declared / 1e9:.3g} GB of numbers, for which {free_memory() / 1e9:.3g} GB of free memory "
-            "are too few: run the scene with fewer molecules or frames."
-        )
+        problem = f"{source} holds {much}, for which {free_memory() / 1e9:.3g} GB of free memory are too few"
+        raise FileError(f"{problem}: run the scene with fewer molecules or frames.")
     for name, kind in _JSON.items():
         if name in file.ncattrs() and not isinstance(_parsed(file.getncattr(name)), kind):
             raise FileError(f"The attribute {name} of {source} is not as atmosbox writes it: run the scene again.")

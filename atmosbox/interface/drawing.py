@@ -167,17 +167,17 @@ def compare(
     if not 2 <= len(runs) <= MOST:
         raise SettingError("runs", None, f"are {len(runs)}", "give two to six")
     find(theme)
-    called = [Path(run).stem if isinstance(run, str | os.PathLike) else _ordinal(k) for k, run in enumerate(runs)]
+    ordinals = ("first", "second", "third", "fourth", "fifth", "sixth")
+    called = [
+        Path(run).stem if isinstance(run, str | os.PathLike) else word
+        for run, word in zip(runs, ordinals, strict=False)
+    ]
     datasets = [opened(run) for run in runs]
     names = naming(datasets, called)
     if out is not None:
         save(datasets, names, out, theme=theme, force=force)
     drawing = _shown(drawn(datasets, names, theme), theme)
     return Comparison(drawing, "\n".join(comparison_lines(called, names, compared(datasets), _WIDTH)))
-
-
-def _ordinal(k: int) -> str:
-    return ("first", "second", "third", "fourth", "fifth", "sixth")[k]
 
 
 class InlinePage:

@@ -268,15 +268,9 @@ def sweep(
     from atmosbox.sweep.plan import plan
 
     with progress_bar(os.fspath(scene), progress) as show:
-        grid = plan(
-            scene,
-            [f"{name}={_typed(values)}" for name, values in vary.items()],
-            settings=settings,
-            members=members,
-            seed=seed,
-            engine=engine,
-            accuracy=accuracy,
-        )
+        varied = [f"{name}={_typed(values)}" for name, values in vary.items()]
+        how: dict[str, Any] = {"members": members, "seed": seed, "engine": engine, "accuracy": accuracy}
+        grid = plan(scene, varied, settings=settings, **how)
         path = None if out is None else os.fspath(out)
         command = f"atmosbox.sweep({grid.scene!r}, {dict(vary)!r}, members={members})"
         return conduct(grid, path, jobs=jobs, scheduler=scheduler, force=force, progress=show, command=command)

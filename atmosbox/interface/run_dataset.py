@@ -52,7 +52,7 @@ def _results(dataset: xr.Dataset) -> list[str]:
     """Return the lines that are shown above the variables of a run; none if the dataset is not a single run."""
     from atmosbox.errors import AtmosboxError
     from atmosbox.file.provenance import parameters
-    from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of
+    from atmosbox.simulation.verification import headlines_of
     from atmosbox.text.report import headline_lines, ledger_line
 
     if "atmosbox_headlines" not in dataset.attrs or {"member", "rung"} & set(dataset.dims):
@@ -69,7 +69,7 @@ def _results(dataset: xr.Dataset) -> list[str]:
     status = str(dataset.attrs.get("atmosbox_status", "complete"))
     notes = [] if status == "complete" else [f"the run is {status}"]
     if dataset.sizes.get("elapsed_time", 0) and "ledger_residual" in dataset:
-        notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values)), LEDGER_LIMIT))
+        notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values))))
     return [head, "", *headline_lines(headlines, _WIDTH), "", *notes, ""]
 
 
@@ -104,18 +104,8 @@ def preformatted(text: str) -> str:
 def progress_bar(name: str, progress: Show | bool | None = None) -> Iterator[Show | None]:
     """Show the progress of a run: in a notebook below its cell, on a terminal in the last line, elsewhere not at all.
 
-    Parameters
-    ----------
-    name
-        The name of what runs.
-    progress
-        A function to call instead of showing a bar, with the share that is done and the name of the present step;
-        False to show nothing; True to show progress elsewhere too.
-
-    Yields
-    ------
-    callable or None
-        The function that the run calls; None if nothing is shown.
+    `progress` is a function to call instead, with the share that is done and the name of the present step; False to
+    show nothing; True to show progress elsewhere too. Yields the function that the run calls; None if nothing is shown.
     """
     if callable(progress):
         yield progress

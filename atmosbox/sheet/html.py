@@ -27,8 +27,6 @@ textarea { width: 100%; box-sizing: border-box; font: inherit; }
 svg { width: 100%; max-width: 30rem; border: 1px solid #666; }
 """  # noqa: E501
 _FIELD = re.compile(r"(\w+): _{5,}")
-_COLUMNS = 6
-"""Number of columns of the table."""
 
 
 def html(sheet: Worksheet) -> str:
@@ -63,7 +61,7 @@ def _elements(sheet: Worksheet) -> list[str]:
             numbered = re.match(r"\*\*(\d+)\.\*\*", block.inside[0].content) if block.inside else None
             question = numbered[1] if numbered else question
             if kind == "table_open":
-                made.append(_table([_inline(token) for token in block.inside], said))
+                made.append(_table([[_inline(token) for token in row] for row in block.rows], said))
             elif kind == "bullet_list_open":
                 name = said("choices of question {}").format(question)
                 made.append(_choices([_inline(token) for token in block.inside], name, ticked=sheet.answers))
@@ -90,22 +88,19 @@ def _choices(items: Sequence[str], name: str, *, ticked: bool) -> str:
     return f'<ul aria-label="{name}">\n' + "\n".join(rows) + "\n</ul>\n"
 
 
-def _table(cells: Sequence[str], said: Callable[[str], str]) -> str:
+def _table(rows: Sequence[Sequence[str]], said: Callable[[str], str]) -> str:
     """Return the table: each row begins with its quantity and its run, so that it can be understood alone."""
-    head, *rows = [cells[first : first + _COLUMNS] for first in range(0, len(cells), _COLUMNS)]
     made = [f'<div class="wide" tabindex="0">\n<table>\n<caption>{said("Measurements")}</caption>\n<thead><tr>']
-    made += [f'<th scope="col">{name}</th>' for name in head]
-    made.append("</tr></thead>\n<tbody>\n")
+    made += [*(f'<th scope="col">{name}</th>' for name in rows[0]), "</tr></thead>\n<tbody>\n"]
     quantity, formula = "", ""
-    for label, theory, run, *others in rows:
+    for label, theory, run, *others in rows[1:]:
         quantity, formula = (label, theory) if label else (quantity, formula)
-        row = f'<th scope="row">{quantity}</th><td>{formula}</td><td>{run}</td>'
+        made.append(f'<tr><th scope="row">{quantity}</th><td>{formula}</td><td>{run}</td>')
         named = f"{re.sub('<.*?>', '', quantity)}, {said('run')} {run}"
-        fields = (
-            f'<input type="text" size="9" aria-label="{what}, {named}">' if other in ("", "±") else other
-            for what, other in zip(head[3:], others, strict=True)
-        )
-        made.append(f"<tr>{row}{''.join(f'<td>{field}</td>' for field in fields)}</tr>\n")
+        for what, other in zip(rows[0][3:], others, strict=True):
+            field = f'<input type="text" size="9" aria-label="{what}, {named}">'
+            made.append(f"<td>{field if other in ('', '±') else other}</td>")
+        made.append("</tr>\n")
     return "".join([*made, "</tbody>\n</table>\n</div>\n"])
 
 

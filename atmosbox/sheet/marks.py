@@ -57,6 +57,11 @@ class Block(NamedTuple):
     """The lines of text in it."""
 
     @property
+    def rows(self) -> list[list[Token]]:
+        """The cells of a table, which has six columns, row by row."""
+        return [self.inside[first : first + 6] for first in range(0, len(self.inside), 6)]
+
+    @property
     def axes(self) -> tuple[str, str]:
         """The labels of empty axes, horizontal and vertical."""
         y, *_, x = self.tokens[0].content.splitlines()
@@ -94,7 +99,7 @@ def as_paragraph(tokens: Sequence[Token], size: float) -> str:
         tag = token.content.strip("<>")
         if token.type == "html_inline" and tag in _RISE:
             made.append(f'<{tag} rise="{_RISE[tag] * size:.1f}" size="{SMALLER * size:.1f}">')
-        elif token.type == "html_inline" and token.content in _HTML:
+        elif token.content in _HTML and token.type == "html_inline":
             made.append(token.content)
         elif token.type == "code_inline":
             typed = token.content if len(token.content) > LONGEST else token.content.replace(" ", "\u00a0")

@@ -53,22 +53,8 @@ class Printed(NamedTuple):
 
 
 def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
-    """Return a sheet as PDF.
+    """Return a sheet as PDF, on one of the `PAPERS`.
 
-    Parameters
-    ----------
-    sheet
-        From `worksheet`.
-    paper
-        One of `PAPERS`.
-
-    Returns
-    -------
-    Printed
-        The bytes, and the number of pages.
-
-    Notes
-    -----
     The fonts are embedded, so that every character is shown on every computer and can be searched for. The file
     contains neither a date nor a random number.
 
@@ -88,14 +74,7 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
 
 @functools.cache
 def load_fonts() -> None:
-    """Register the fonts that come with matplotlib.
-
-    Examples
-    --------
-    >>> load_fonts()
-    >>> pdfmetrics.stringWidth("±", BODY, 10.0) > 0.0
-    True
-    """
+    """Register the fonts that come with matplotlib."""
     import matplotlib
 
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
@@ -126,6 +105,11 @@ def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
     story = _Layout(width - 2.0 * (MARGIN + PADDING), room, sheet.said).story(sheet, title)
     document.build(story, onFirstPage=foot, onLaterPages=foot)
     return Printed(stream.getvalue(), document.page)
+
+
+def _padding(**sizes: float) -> list[tuple[Any, ...]]:
+    """Return the free space at the sides of all cells of a table [points]."""
+    return [(f"{side}PADDING", (0, 0), (-1, -1), size) for side, size in sizes.items()]
 
 
 class _Layout:
@@ -216,12 +200,11 @@ class _Layout:
                 case "hr":
                     yield "on", HRFlowable("100%", 0.4, color=(GREY,) * 3, spaceBefore=pitch, spaceAfter=4.0)
                 case "table_open":
-                    yield "begin", self.measurements(inside)
+                    yield "begin", self.measurements(block.rows)
 
     def barred(self, lines: Sequence[Token]) -> Flowable:
         """Return an answer, with a vertical bar beside it."""
-        style = [("LINEBEFORE", (0, 0), (0, -1), 1.6, (0.0, 0.447, 0.698)), ("TOPPADDING", (0, 0), (-1, -1), 0.5),
-                 ("BOTTOMPADDING", (0, 0), (-1, -1), 0.5), ("LEFTPADDING", (0, 0), (-1, -1), 0.0)]  # fmt: skip
+        style = [("LINEBEFORE", (0, 0), (0, -1), 1.6, (0.0, 0.447, 0.698)), *_padding(TOP=0.5, BOTTOM=0.5, LEFT=0.0)]
         return self.table([[[self.line(line, self.answer) for line in lines]]], (1.0,), style, spaceAfter=4.0)
 
     def choices(self, items: Sequence[str]) -> Flowable:
@@ -230,32 +213,30 @@ class _Layout:
         columns = max(min(len(texts), LONG // max(map(len, texts))), 1)
         columns = 2 if columns == 3 and len(texts) == 4 else columns
         cells: list[Any] = [self.marked(text, self.cell) for text in texts] + [""] * (-len(texts) % columns)
-        style = [("TOPPADDING", (0, 0), (-1, -1), 1.0), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.0),
-                 ("LEFTPADDING", (0, 0), (-1, -1), 14.0)]  # fmt: skip
+        style = _padding(TOP=1.0, BOTTOM=2.0, LEFT=14.0)
         rows = [cells[first : first + columns] for first in range(0, len(cells), columns)]
         return self.table(rows, [1.0 / columns] * columns, style, spaceAfter=3.0)
 
-    def measurements(self, cells: Sequence[Token]) -> Flowable:
+    def measurements(self, cells: Sequence[Sequence[Token]]) -> Flowable:
         """Return the table; a formula is below its quantity, and the lines of one quantity stay together."""
-        texts = [as_paragraph(cell.children or (), self.cell.fontSize) for cell in cells]
-        (what, _, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
+        size = self.cell.fontSize
+        (what, _, *names), *lines = [[as_paragraph(cell.children or (), size) for cell in row] for row in cells]
         said = self.said
         headed = said("quantity, with its formula") if what == said("quantity") else said("graph, and which curve")
         rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in (headed, *names)]]
         style: list[Any] = [
-            ("GRID", (0, 0), (-1, -1), 0.4, (GREY,) * 3), ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
-            ("TOPPADDING", (0, 0), (-1, -1), 1.5), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.0),
-            ("LEFTPADDING", (0, 0), (-1, -1), 4.0), ("RIGHTPADDING", (0, 0), (-1, -1), 3.0),
-        ]  # fmt: skip
+            ("GRID", (0, 0), (-1, -1), 0.4, (GREY,) * 3),
+            ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
+            *_padding(TOP=1.5, BOTTOM=2.0, LEFT=4.0, RIGHT=3.0),
+        ]
         tops = [number for number, (label, *_) in enumerate(lines, 1) if label] + [len(lines) + 1]
         for top, below in itertools.pairwise(tops):
             # reportlab never breaks a page within a span
             style += [("SPAN", (0, top), (0, below - 1)), ("LINEABOVE", (0, top), (-1, top), 1.0, (0, 0, 0))]
         for label, formula, run, value, *others in lines:
             named = f'{label}<br/><font size="7.6">{formula}</font>' if formula else label
-            middle = self.middle if value == "±" else self.cell
-            rows.append([Paragraph(named, self.cell), Paragraph(run, self.cell), Paragraph(value, middle),
-                         *(Paragraph(other, self.cell) for other in others)])  # fmt: skip
+            styles = [self.cell, self.cell, self.middle if value == "±" else self.cell, self.cell, self.cell]
+            rows.append(list(map(Paragraph, (named, run, value, *others), styles)))
         height = self.room * ROW if any(value == "±" for _, _, _, value, *_ in lines) else None
         heights = [None, *[height] * len(lines)]
         return self.table(rows, SHARES, style, rowHeights=heights, repeatRows=1, spaceBefore=2.0, spaceAfter=5.0)

@@ -17,28 +17,7 @@ FORMATS = ("pdf", "html", "md")
 def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str = "a4", force: bool = False) -> Path:
     """Return the path of the file of a sheet, or refuse it before time is spent on a run.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The file. Its suffix gives the format; if ``format`` is given, a missing suffix is added.
-    format : {"pdf", "html", "md"}, optional
-        The format, by default that of the suffix.
-    paper : {"a4", "letter"}
-        The paper of a PDF.
-    force : bool
-        Whether a file of that name may be replaced.
-
-    Returns
-    -------
-    pathlib.Path
-        The file.
-
-    Raises
-    ------
-    FileError
-        If the file exists, or its folder does not.
-    SettingError
-        If the format or the paper is unknown.
+    Its suffix gives the format; if ``format`` is given, a missing suffix is added.
 
     Examples
     --------
@@ -60,26 +39,7 @@ def save(
     paper: str = "a4",
     force: bool = False,
 ) -> Path:
-    """Write a sheet into a file.
-
-    Parameters
-    ----------
-    sheet : Worksheet
-        The sheet, from `worksheet`.
-    path, format, paper, force
-        See `check`.
-
-    Returns
-    -------
-    pathlib.Path
-        The file that was written.
-
-    Raises
-    ------
-    FileError
-        If the file exists already or cannot be written.
-    SettingError
-        If the format or the paper is unknown.
+    """Write a sheet into a file, which `check` has not refused, and return its path.
 
     Examples
     --------

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from atmosbox.errors import ConfigError, PhysicsError, shown
+from atmosbox.errors import Command, ConfigError, Option, PhysicsError, Setting, on_command_line, shown
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
 from atmosbox.sheet.sums import Measured, SetNumber
@@ -41,13 +40,7 @@ class Trial:
 
     @property
     def file(self) -> str:
-        """Name of the file that it writes.
-
-        Examples
-        --------
-        >>> Trial("B", "", runner.prepare("lifting-dry", {})).file
-        'lifting-dry-B.nc'
-        """
+        """Name of the file that it writes."""
         stem = self.prepared.scene.replace("\\", "/").rpartition("/")[2].removesuffix(".py")
         return f"{stem}-{self.letter}.nc"
 
@@ -62,31 +55,18 @@ class Trial:
         """
         settings, engine = self.prepared.settings, self.prepared.unusual_engine
         known = {p.name: p for p in settings.describe()}
-        words = ["atmosbox run", shlex.quote(self.prepared.scene), f"--seed {settings.seed}"]
-        words += [f"--set {name}={known[name].typed(v)}" for name, v in settings.changed().items() if name != "seed"]
-        words += [f"--engine {shlex.quote(engine)}"] if engine else []
-        return " ".join([*words, f"--out {shlex.quote(self.file)}"])
+        changed = [Setting(name, known[name].typed(v)) for name, v in settings.changed().items() if name != "seed"]
+        last = [*([Option("engine", engine)] if engine else []), Option("out", self.file)]
+        return on_command_line(Command("run", (self.prepared.scene, Option("seed", settings.seed), *changed, *last)))
 
     @property
     def plot_command(self) -> str:
-        """The command that draws its figure.
-
-        Examples
-        --------
-        >>> Trial("A", "", runner.prepare("lifting-dry", {})).plot_command
-        'atmosbox plot lifting-dry-A.nc'
-        """
-        return f"atmosbox plot {shlex.quote(self.file)}"
+        """The command that draws its figure."""
+        return on_command_line(Command("plot", (self.file,)))
 
     @property
     def page(self) -> str:
-        """Name of the page in which it runs, for a sheet that is done without Python.
-
-        Examples
-        --------
-        >>> Trial("B", "", runner.prepare("lifting-dry", {})).page
-        'lifting-dry-B.html'
-        """
+        """Name of the page in which it runs, for a sheet that is done without Python."""
         return f"{self.file.removesuffix('.nc')}.html"
 
     @property
@@ -133,13 +113,8 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
     >>> [(each.letter, each.fact("ascent")) for each in found]
     [('A', 1600.0), ('B', 160.0)]
     """
-    found = [
-        Trial(
-            _LETTERS[0],
-            "with the default settings" if not first.settings.changed().keys() - {"seed"} else "with these settings",
-            first,
-        )
-    ]
+    default = not first.settings.changed().keys() - {"seed"}
+    found = [Trial(_LETTERS[0], "with the default settings" if default else "with these settings", first)]
     for letter, change in zip(_LETTERS[1:], changes, strict=False):
         settings = type(first.settings).from_user({**first.settings.as_dict(), **change.set})
         if settings == first.settings:
@@ -158,18 +133,16 @@ def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | Non
     >>> made.fact("largest_energy_change").theory
     0.0
     """
-    made = []
-    for number, trial in enumerate(asked):
+    made: list[Trial] = []
 
-        def show(share: float, word: str, before: int = number) -> None:
-            if progress is not None:
-                progress((before + share) / len(asked), word)
+    def show(share: float, word: str) -> None:
+        if progress is not None:
+            progress((len(made) + share) / len(asked), word)
 
+    for trial in asked:
         outcome = runner.execute(trial.prepared, progress=show, command=trial.command)
         if not outcome.ledger <= runner.LEDGER_LIMIT:
-            raise PhysicsError(
-                f"The energy budget of run {trial.letter} is off by {outcome.ledger:.0e}, "
-                f"more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it."
-            )
+            problem = f"The energy budget of run {trial.letter} is off by {outcome.ledger:.0e}"
+            raise PhysicsError(f"{problem}, more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it.")
         made.append(replace(trial, outcome=outcome))
     return tuple(made)

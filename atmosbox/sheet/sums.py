@@ -155,11 +155,6 @@ def _digits(number: float) -> int:
     return int(min(max(number, 0), MOST_DIGITS))
 
 
-def _round(number: Any, digits: float = 0) -> str:
-    """Return a number as text with some decimals."""
-    return fixed(float(nominal_value(number)), _digits(digits))
-
-
 def _at(level: float, along: Any, series: Any) -> float:
     """Return the value of a curve at a level of its abscissa, by linear interpolation."""
     order = np.argsort(along)
@@ -171,7 +166,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sqrt": umath.sqrt,
     "exp": umath.exp,
     "ln": umath.log,
-    "round": _round,
+    "round": lambda number, digits=0: fixed(float(nominal_value(number)), _digits(digits)),
     "figures": lambda number, count: bare(nominal_value(number), max(_digits(count), 1)),
     "first": lambda series: float(series[0]),
     "last": lambda series: float(series[-1]),

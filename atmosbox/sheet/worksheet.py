@@ -268,10 +268,10 @@ def _written(
     if lab:
         content["row"] = []
     elif not words["row"]:
-        found = [each for each in runs[0].headlines.values() if each.resolved and not each.program]
         content["row"] = [
             {"headline": h.name, "label": said(h.label), "unit": h.display_unit, "theory": "", "runs": "ABCD"}
-            for h in found
+            for h in runs[0].headlines.values()
+            if h.resolved and not h.program
         ]
     labels = {row["headline"]: row["label"] for row in content["row"]}
     for row in content["row"]:

@@ -19,21 +19,6 @@ from typing import Any, NamedTuple
 from atmosbox.errors import Option, SettingError
 from atmosbox.scene.target import FIX, TARGETS, Target, parse
 
-__all__ = [
-    "TARGETS",
-    "Expectation",
-    "ExpectedError",
-    "Measured",
-    "Table",
-    "Target",
-    "choose",
-    "cost",
-    "expect",
-    "load",
-    "parse",
-    "said",
-]
-
 
 class ExpectedError(NamedTuple):
     """The measured error of a headline: in K if ``unit`` is K, else as a share of the theory.
@@ -131,25 +116,15 @@ class Table:
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> Table:
         """Return the table from its entry in the file."""
-        about = entry["headlines"]
-        return cls(
-            tuple(entry["varies"]),
-            {name: one["label"] for name, one in about.items()},
-            tuple(
-                Measured(
-                    way["engine"],
-                    way["settings"],
-                    way["cost"],
-                    way["members"],
-                    {
-                        name: ExpectedError(about[name]["unit"], bias, bias_se, noise, about[name]["theory"])
-                        for name, (bias, bias_se, noise) in way["errors"].items()
-                    },
-                )
-                for way in entry["ways"]
-            ),
-            entry["measured"],
-        )
+        about, ways = entry["headlines"], []
+        for way in entry["ways"]:
+            errors = {
+                name: ExpectedError(about[name]["unit"], bias, bias_se, noise, about[name]["theory"])
+                for name, (bias, bias_se, noise) in way["errors"].items()
+            }
+            ways.append(Measured(way["engine"], way["settings"], way["cost"], way["members"], errors))
+        labels = {name: one["label"] for name, one in about.items()}
+        return cls(tuple(entry["varies"]), labels, tuple(ways), entry["measured"])
 
     def same_experiment(self, settings: Mapping[str, Any]) -> tuple[Measured, ...]:
         """Return the measured runs of the experiment that a user has set, as far as the table distinguishes it.
@@ -229,20 +204,16 @@ class Expectation:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the expectation as values that JSON can hold."""
-        errors = {
-            name: {**error._asdict(), "total": error.total, "label": self.labels[name]}
-            for name, error in self.way.errors.items()
-        }
-        return {
+        way, errors = self.way, {}
+        for name, error in way.errors.items():
+            errors[name] = {**error._asdict(), "total": error.total, "label": self.labels[name]}
+        made: dict[str, Any] = {
             "wish": None if self.target is None else self.target.text,
             "met": self.met,
-            "engine": self.way.engine,
-            "settings": dict(self.way.settings),
-            "cost": self.way.cost,
-            "members": self.way.members,
-            "differs": list(self.differs),
-            "errors": errors,
+            "engine": way.engine,
         }
+        made |= {"settings": dict(way.settings), "cost": way.cost, "members": way.members}
+        return {**made, "differs": list(self.differs), "errors": errors}
 
 
 def choose(

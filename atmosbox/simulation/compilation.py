@@ -24,19 +24,9 @@ _FILE = "seconds.json"
 def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Callable[[], float]]:
     """Report the progress of compilation while a block runs, if anything is compiled in the block.
 
-    The expected time is that of the last compilation of the scene on this machine.
-
-    Parameters
-    ----------
-    prepared
-        The scene that is run.
-    tell
-        Called with the completed share and a sentence, from a separate thread while the compiler works.
-
-    Yields
-    ------
-    callable
-        Function that returns the processor time of the compiler so far [s].
+    The expected time is that of the last compilation of the scene on this machine. `tell` is called with the completed
+    share and a sentence, from a separate thread while the compiler works. Yields a function that returns the processor
+    time of the compiler so far [s].
 
     Examples
     --------

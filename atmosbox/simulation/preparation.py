@@ -61,15 +61,9 @@ class Prepared:
         """All values that determine the run, and its expected errors, as JSON can hold them."""
         expected = self.stated if self.expectation is None else self.expectation.as_dict()
         known = {} if expected is None else {"accuracy": expected}
-        return {
-            "scene": self.scene,
-            "settings": self.settings.as_dict(),
-            "engine": str(self.engine),
-            "version": __version__,
-            "save_molecules": self.save_molecules,
-            **known,
-            **({} if self.replay is None else {"replay": self.replay.link}),
-        }
+        made: dict[str, Any] = {"scene": self.scene, "settings": self.settings.as_dict(), "engine": str(self.engine)}
+        made |= {"version": __version__, "save_molecules": self.save_molecules}
+        return {**made, **known, **({} if self.replay is None else {"replay": self.replay.link})}
 
     def frames(self, setup: Setup) -> int:
         """Return the number of frames of the run: those of the scene, or of the link."""

@@ -81,23 +81,11 @@ class Recording:
         """Number of complete frames."""
         return len(self.times) - 1
 
-    def sample(self, snapshot: Snapshot) -> None:
-        """Let all instruments sample the molecules in their present state; an interrupt cannot come in between."""
-        with uninterrupted():
-            for instrument in self.instruments:
-                instrument.sample(self.setup.parcel, snapshot)
-            self.sampled += 1
-
-    def end_frame(self, snapshot: Snapshot) -> None:
-        """Let all instruments finish a frame without interruption: a frame of some instruments cannot be saved."""
-        with uninterrupted():
-            for instrument in self.instruments:
-                instrument.end_frame(self.setup.parcel, snapshot)
-            self.times.append(self.setup.parcel.time)
-            self.sampled = 0
-
     def advance(self, watch: Callable[[float], None]) -> None:
-        """Advance to the end of the frame and measure; an interrupted frame continues with its next sample."""
+        """Advance to the end of the frame and measure; an interrupted frame continues with its next sample.
+
+        An interrupt comes before all instruments or after all: what only some of them have seen could not be saved.
+        """
         parcel = self.setup.parcel
         frame, began = self.frames, time.perf_counter()
         snapshot: Snapshot | None = None
@@ -107,8 +95,16 @@ class Recording:
             parcel.advance(max(self.setup.moment(frame, sample), parcel.time), watch)
             self.busy += time.process_time() - busy
             snapshot = parcel.snapshot()
-            self.sample(snapshot)
-        self.end_frame(parcel.snapshot() if snapshot is None else snapshot)
+            with uninterrupted():
+                for instrument in self.instruments:
+                    instrument.sample(parcel, snapshot)
+                self.sampled += 1
+        last = parcel.snapshot() if snapshot is None else snapshot
+        with uninterrupted():
+            for instrument in self.instruments:
+                instrument.end_frame(parcel, last)
+            self.times.append(parcel.time)
+            self.sampled = 0
         self.seconds += time.perf_counter() - began
 
     def _turn_knobs(self) -> None:

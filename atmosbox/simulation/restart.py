@@ -14,7 +14,6 @@ import json
 import platform
 import warnings
 import zipfile
-from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
 from types import ModuleType
@@ -39,6 +38,8 @@ FORMAT = 2
 """Version of the format that is written here."""
 
 _KEPT = {"kept": 0}
+_COUNTED: dict[str, type] = {"sampled": int, "turned": int, "busy": float, "seconds": float}
+"""The numbers of a `Recording` that are stored with the state of its box and its instruments."""
 _DAMAGE = (RefusedError, ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, OSError, RuntimeError,
            TypeError, ValueError, zipfile.BadZipFile)  # fmt: skip
 """What a state raises that is damaged, or that of another run."""
@@ -111,15 +112,15 @@ def with_state(dataset: xr.Dataset, recording: Recording) -> xr.Dataset:
 
     from atmosbox.file.netcdf import STATE
 
-    known = {id(recording.setup.parcel), id(recording.setup), *map(id, _drivers(recording))}
-    coder = _Coder(known, recording.prepared.module)
+    parcel = recording.setup.parcel  # whose state contains that of its driver already
+    coder = _Coder({*map(id, (parcel, recording.setup, getattr(parcel, "_driver", None)))}, recording.prepared.module)
     try:
-        state = recording.setup.parcel.state()
+        state = parcel.state()
         tree = {
             "box": {"text": state.text, "memory": {name: coder.keep(piece) for name, piece in state.memory.items()}},
             "instruments": [coder.attributes(one, f"instrument {k}") for k, one in enumerate(recording.instruments, 1)],
-            "times": coder.code(list(recording.times), "times"),
-            **{name: getattr(recording, name) for name in ("sampled", "turned", "busy", "seconds")},
+            "times": [coder.code(time, "times") for time in recording.times],
+            **{name: getattr(recording, name) for name in _COUNTED},
         }
     except (RefusedError, UnkeptError) as error:
         warnings.warn(f"this run cannot be resumed, for {error} cannot be stored in a file", stacklevel=2)
@@ -164,11 +165,8 @@ def check_alike(restart: Restart, prepared: Prepared) -> None:
         before = restart.about.get(name)
         if before != json.loads(json.dumps(value)):
             said = f" ({before}, now {value})" if isinstance(before, str | int) else ""
-            raise FileError(
-                f"{restart.source} cannot go on bit for bit, because the {name}{said} changed since",
-                from_file(restart.source),
-                " to begin again",
-            )
+            problem = f"{restart.source} cannot go on bit for bit, because the {name}{said} changed since"
+            raise FileError(problem, from_file(restart.source), " to begin again")
 
 
 def put_back(restart: Restart, recording: Recording) -> None:
@@ -182,22 +180,11 @@ def put_back(restart: Restart, recording: Recording) -> None:
         for each, codes in zip(recording.instruments, tree["instruments"], strict=True):
             _into(vars(each), codes, arrays)
         recording.times = [float(time) for time in tree["times"]]
-        recording.sampled = int(tree["sampled"])
-        recording.turned = int(tree["turned"])
-        recording.busy = float(tree["busy"])
-        recording.seconds = float(tree["seconds"])
+        for name, kind in _COUNTED.items():
+            setattr(recording, name, kind(tree[name]))
     except _DAMAGE as error:
-        raise FileError(
-            f"The state in {restart.source} is damaged or that of another run ({error})",
-            from_file(restart.source),
-            " to begin again",
-        ) from error
-
-
-def _drivers(recording: Recording) -> list[object]:
-    """Return the objects that the state of the box contains already."""
-    driver = getattr(recording.setup.parcel, "_driver", None)
-    return [] if driver is None else [driver]
+        problem = f"The state in {restart.source} is damaged or that of another run ({error})"
+        raise FileError(problem, from_file(restart.source), " to begin again") from error
 
 
 class _Coder:
@@ -218,26 +205,20 @@ class _Coder:
 
     def code(self, value: Any, path: str, *, nested: bool = False) -> Any:
         """Return the code of a value; a value nested in a list or dictionary must consist of plain numbers alone."""
+        named = getattr(value, "_fields", None)
         if value is None or type(value) in (bool, int, float, str):
             return value
         if isinstance(value, np.generic):
             return {"scalar": [value.dtype.str, value.tobytes().hex()]}
-        if isinstance(value, np.ndarray):
-            if value.dtype.hasobject:
-                raise UnkeptError(path)
+        if isinstance(value, np.ndarray) and not value.dtype.hasobject:
             return {"array": self.keep(value)}
         if isinstance(value, list):
             return [self.code(each, path, nested=True) for each in value]
-        if isinstance(value, tuple):
-            named = getattr(value, "_fields", None)
-            if nested and named:
-                raise UnkeptError(path)
+        if isinstance(value, tuple) and not (nested and named):
             return {"tuple": [self.code(each, path, nested=True) for each in value], "named": named}
-        if isinstance(value, dict):
-            if not all(isinstance(key, str) for key in value):
-                raise UnkeptError(path)
+        if isinstance(value, dict) and all(isinstance(key, str) for key in value):
             return {"dict": {key: self.code(each, path, nested=True) for key, each in value.items()}}
-        if nested:
+        if nested or isinstance(value, np.ndarray | tuple | dict):
             raise UnkeptError(path)
         if isinstance(value, np.random.Generator):
             return {"generator": value.bit_generator.state}
@@ -259,30 +240,26 @@ def _into(held: dict[str, Any], codes: dict[str, Any], arrays: list[NDArray[Any]
 
 def _value(code: Any, old: Any, arrays: list[NDArray[Any]]) -> Any:
     """Return the value that a code stands for; ``old`` is the object of the new run in its place."""
-    if isinstance(code, list):
-        return [_value(each, None, arrays) for each in code]
-    if not isinstance(code, dict):
-        return code
-    makers: dict[str, Callable[[Any], Any]] = {
-        "scalar": lambda inside: np.frombuffer(bytes.fromhex(inside[1]), np.dtype(inside[0]))[0],
-        "array": lambda inside: arrays[inside],
-        "dict": lambda inside: {key: _value(each, None, arrays) for key, each in inside.items()},
-    }
-    tag = next(iter(code))
-    inside = code[tag]
-    if tag in makers:
-        return makers[tag](inside)
-    if tag == "tuple":
-        parts = [_value(each, None, arrays) for each in inside]
-        if not code["named"]:
-            return tuple(parts)
-        if list(getattr(old, "_fields", ())) != code["named"]:
-            raise ValueError("a tuple with names")
-        return old._make(parts)
-    if old is None:
-        raise ValueError("an object that the scene does not build")
-    if tag == "generator":
-        old.bit_generator.state = inside
-    elif tag == "object":
-        _into(vars(old), inside, arrays)
-    return old
+    match code:
+        case list():
+            return [_value(each, None, arrays) for each in code]
+        case {"scalar": inside}:
+            return np.frombuffer(bytes.fromhex(inside[1]), np.dtype(inside[0]))[0]
+        case {"array": place}:
+            return arrays[place]
+        case {"dict": inside}:
+            return {key: _value(each, None, arrays) for key, each in inside.items()}
+        case {"tuple": inside}:
+            parts, named = [_value(each, None, arrays) for each in inside], code["named"]
+            if not named:
+                return tuple(parts)
+            if list(getattr(old, "_fields", ())) != named:
+                raise ValueError("a tuple with names")
+            return old._make(parts)
+        case dict() if old is None:
+            raise ValueError("an object that the scene does not build")
+        case {"generator": inside}:
+            old.bit_generator.state = inside
+        case {"object": inside}:
+            _into(vars(old), inside, arrays)
+    return old if isinstance(code, dict) else code

@@ -18,33 +18,17 @@ from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.link import check_nothing_changes, read_link
-from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare, replayed
+from atmosbox.simulation.preparation import Prepared, build, card, prepare, replayed
 from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.restart import Restart, check_alike, from_file, put_back, with_state
-from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
+from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of, verify
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from atmosbox.file.checkpoint import Checkpoint
 
-__all__ = [
-    "LEDGER_LIMIT",
-    "Card",
-    "Check",
-    "Interrupted",
-    "Outcome",
-    "Prepared",
-    "build",
-    "card",
-    "check_nothing_changes",
-    "execute",
-    "headlines_of",
-    "prepare",
-    "prepared_again",
-    "replayed",
-    "verify",
-]
+__all__ = ["LEDGER_LIMIT", "Prepared", "card", "check_nothing_changes", "headlines_of", "prepare", "replayed", "verify"]
 
 _BREATH = 0.1
 
@@ -122,6 +106,7 @@ def execute(
     >>> outcome.ledger < LEDGER_LIMIT
     True
     """
+    tell = progress or (lambda share, word: None)
     if restart is not None:
         check_alike(restart, prepared)
     with contextlib.ExitStack() as stack:
@@ -129,45 +114,40 @@ def execute(
             with uninterrupted():
                 checkpoint.load_libraries()
             stack.callback(checkpoint.begin().release)
-        return _execute(prepared, checkpoint, progress or (lambda share, word: None), command, restart, strict)
+        with told(prepared, tell):
+            setup = build(prepared)
+            setup.parcel.advance(0.0)
+        for sentence in setup.doubts:
+            if strict:
+                raise SoundingError(sentence[:-1], "correct it, or leave ", Option("strict"), " out")
+            if restart is None:
+                warnings.warn(sentence, stacklevel=2)
+        if prepared.replay is not None:
+            prepared.replay.check(setup)
+        frames = prepared.frames(setup)
+        recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
+        if restart is not None:
+            put_back(restart, recording)
+            if recording.frames >= frames:
+                raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
+        done = _recorded(recording, frames, checkpoint, tell)
+    if prepared.replay is None:
+        remember_pace(prepared, done.engine_seconds)
+    return done
 
 
-def _execute(
-    prepared: Prepared,
-    checkpoint: Checkpoint | None,
-    tell: Progress,
-    command: str,
-    restart: Restart | None,
-    strict: bool,
-) -> Outcome:
-    """Run a prepared scenario after its output path has been reserved."""
-    with told(prepared, tell):
-        setup = build(prepared)
-        setup.parcel.advance(0.0)
-    for sentence in setup.doubts:
-        if strict:
-            raise SoundingError(sentence[:-1], "correct it, or leave ", Option("strict"), " out")
-        if restart is None:
-            warnings.warn(sentence, stacklevel=3)
-    if prepared.replay is not None:
-        prepared.replay.check(setup)
-    frames = prepared.frames(setup)
-    recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart))
-    last = 0.0
-    if restart is not None:
-        put_back(restart, recording)
-        if recording.frames >= frames:
-            raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
+def _recorded(recording: Recording, frames: int, checkpoint: Checkpoint | None, tell: Progress) -> Outcome:
+    """Record all frames of a run, or those before it is stopped, and save them."""
+    parcel, last = recording.setup.parcel, 0.0
 
     def watch(now: float) -> None:
         nonlocal last
         if time.perf_counter() - last > _BREATH:
             last = time.perf_counter()
-            tell(min(now / (frames * setup.frame), 1.0), "running")
+            tell(min(now / (frames * recording.setup.frame), 1.0), "running")
 
     def outcome(status: str) -> Outcome:
         dataset, headlines = recording.dataset(status)
-        parcel = setup.parcel
         made = parcel.numerical_heat / (sum(parcel.energy()[:2]) or 1.0)
         cost = (recording.seconds, parcel.contacts, parcel.ledger(), recording.busy)
         return Outcome(dataset, headlines, *cost, made, parcel.escaped())
@@ -175,13 +155,13 @@ def _execute(
     try:
         while recording.frames < frames:
             recording.advance(watch)
-            watch(setup.parcel.time)
+            watch(parcel.time)
             if checkpoint is not None and recording.frames < frames:
                 checkpoint(lambda: with_state(recording.dataset("partial")[0], recording))
         tell(1.0, "done")
         done = outcome("complete")
     except (StalledError, RefusedError) as error:
-        raise EngineError(f"The run of {prepared.scene} cannot go on: {error}.") from error
+        raise EngineError(f"The run of {recording.prepared.scene} cannot go on: {error}.") from error
     except KeyboardInterrupt as stop:
         partial = outcome("interrupted") if recording.frames else None
         if partial is not None and checkpoint is not None:
@@ -191,8 +171,6 @@ def _execute(
     if checkpoint is not None:
         with uninterrupted():
             checkpoint.finish(done.dataset)
-    if prepared.replay is None:
-        remember_pace(prepared, done.engine_seconds)
     return done
 
 
@@ -234,17 +212,11 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
     named = str(made["scene"])
     own = named.endswith(".py") or os.sep in named
     if scene is None and own:
-        raise FileError(
-            f"{restart.source} is for the scene in the file {named}, which must be typed",
-            Command("run", (named, Option("resume", str(restart.source)))),
-        )
+        problem = f"{restart.source} is for the scene in the file {named}, which must be typed"
+        raise FileError(problem, Command("run", (named, Option("resume", str(restart.source)))))
     if scene is not None and os.fspath(scene).replace("_", "-") != named.replace("_", "-"):
         raise FileError(f"{restart.source} is for the scene {named}, not for {scene}: leave one of them out.")
-    prepared = prepare(
-        named if scene is None else scene,
-        made["settings"],
-        engine=str(made["engine"]),
-        save_molecules=made["save_molecules"],
-    )
+    typed, engine, kept = named if scene is None else scene, str(made["engine"]), made["save_molecules"]
+    prepared = prepare(typed, made["settings"], engine=engine, save_molecules=kept)
     again = read_link(made["replay"])[2] if "replay" in made else None
     return replace(prepared, expectation=None, stated=made.get("accuracy"), replay=again)

@@ -63,30 +63,20 @@ def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
     >>> headlines_of(box)[0].name
     'energy_of_light_discs'
     """
+
+    def number(name: str, default: float | None = 0.0) -> Any:
+        return float(dataset[name]) if name in dataset else default
+
     found = []
     try:
         for name in json.loads(dataset.attrs.get("atmosbox_headlines", "[]")):
-            value = dataset[name]
-            theory = dataset.get(f"{name}_theory")
-            error = dataset.get(f"{name}_se")
-            tolerance = dataset.get(f"{name}_tolerance")
-            low, high = map(float, value.attrs["possible_range"]) if "resolved" in value.attrs else (None, None)
-            found.append(
-                Headline(
-                    name,
-                    float(value),
-                    float(error) if error is not None else 0.0,
-                    float(theory) if theory is not None else None,
-                    float(tolerance) if tolerance is not None else 0.0,
-                    str(value.attrs.get("comment", "")),
-                    str(value.attrs["units"]),
-                    str(value.attrs.get("display_units", value.attrs["units"])),
-                    str(value.attrs["long_name"]),
-                    low=low,
-                    high=high,
-                    program=str(value.attrs.get("program", "")),
-                )
-            )
+            about = dataset[name].attrs
+            low, high = map(float, about["possible_range"]) if "resolved" in about else (None, None)
+            theory, tolerance = number(f"{name}_theory", None), number(f"{name}_tolerance")
+            numbers = float(dataset[name]), number(f"{name}_se"), theory, tolerance
+            unit, reason, program = (str(about.get(key, "")) for key in ("units", "comment", "program"))
+            words = reason, unit, str(about.get("display_units", unit)), str(about["long_name"])
+            found.append(Headline(name, *numbers, *words, low=low, high=high, program=program))
         return with_bias(found, json.loads(dataset.attrs.get("atmosbox_parameters", "{}")))
     except (KeyError, ValueError, TypeError) as error:
         raise FileError(f"The headlines of this file cannot be read ({error}): run the scene again.") from error
@@ -138,8 +128,6 @@ def _balance(dataset: xr.Dataset) -> Check:
     terms = {name: dataset[name].values for name in (*STORES, *GIVEN, *_GIVEN_BEFORE) if name in dataset}
     worst = float(np.max(residual(terms))) if dataset.sizes["elapsed_time"] else math.nan
     passed = worst <= LEDGER_LIMIT
-    made = ", what the scheme made" if "numerical_heat" in terms else ""
-    said = f"energy minus heat{made} and work is constant: it changes by {worst:.0e} of it at most"
-    if not passed:
-        said = f"energy minus heat{made} and work is not constant: it changes by {worst:.0e} of it"
-    return Check("balance", passed, said)
+    what = f"energy minus heat{', what the scheme made' if 'numerical_heat' in terms else ''} and work"
+    said = f"is{'' if passed else ' not'} constant: it changes by {worst:.0e} of it{' at most' if passed else ''}"
+    return Check("balance", passed, f"{what} {said}")

@@ -80,7 +80,7 @@ def sweep(
 
     Every run writes its own netCDF file, ``NAME/POINT-MEMBER.nc`` beside NAME.nc. The same call goes on where an
     earlier one stopped, for whatever reason: a run that has its file is not repeated, and the results are the same, bit
-    for bit. With more members, the runs that are there are used.
+    for bit. With more members, the runs that are there are used. Ctrl-C leaves the runs that have ended.
 
     Parameters
     ----------
@@ -104,21 +104,6 @@ def sweep(
     -------
     xarray.Dataset
         The means of all headlines, what each run measured, and which runs failed, see `atmosbox.sweep.result.join`.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        After Ctrl-C; the runs that have ended are saved.
-    AtmosboxError
-        If a file cannot be written, the folder holds another sweep, or the workers cannot be reached.
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.runner import LEDGER_LIMIT
-    >>> from atmosbox.sweep.plan import plan
-    >>> swept = sweep(plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}), jobs=1)
-    >>> dict(swept.sizes), bool(swept.member_ledger.max() < LEDGER_LIMIT)
-    ({'molecules': 2, 'member': 1}, True)
     """
     if out is None:
         with tempfile.TemporaryDirectory(prefix="atmosbox-sweep-") as temporary:
@@ -154,13 +139,7 @@ def sweep(
 
 
 def _take(out: str | os.PathLike[str], wanted: Mapping[str, Any], force: bool) -> None:
-    """Make the folder of a sweep, or go on with it if it is of the same sweep; with `force`, take that of another.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written, or the folder holds anything else.
-    """
+    """Make the folder of a sweep, or go on with it if it is of the same sweep; with `force`, take that of another."""
     folder = folder_of(out)
     known = _request_in(folder)
     check_writable(out, force or known is not None)

@@ -28,25 +28,8 @@ _MEMBERS = Parameter("members", "1", 8, 1, 1_000_000, kind="int", given_as=Optio
 def parse_vary(items: Iterable[str], settings: type[SceneSettings]) -> dict[str, tuple[Value, ...]]:
     """Return the settings that vary, from the texts after each ``--vary``.
 
-    Parameters
-    ----------
-    items
-        ``name=a:b:n`` for n values from a to b with equal differences, ``name=a:b:nlog`` for n values with equal
-        ratios, or ``name=x,y,z`` for these values. Numbers may have units as after ``--set``.
-    settings
-        The settings of the scene.
-
-    Returns
-    -------
-    dict
-        The values of each setting in its documented unit: numbers in ascending order, words and switches as given.
-
-    Raises
-    ------
-    UnitError
-        If a number or its unit cannot be understood.
-    SettingError
-        If a text has none of these forms, a value is not allowed, or a setting varies twice.
+    A text is ``name=a:b:n`` for n values from a to b with equal differences, ``name=a:b:nlog`` for n values with equal
+    ratios, or ``name=x,y,z`` for these values, in ascending order. Numbers may have units as after ``--set``.
 
     Examples
     --------
@@ -117,17 +100,10 @@ def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
 
 
 def member_seed(seed: int, point: int, member: int) -> int:
-    """Return the seed of one member at one point of a sweep.
+    """Return the seed of one member at one point of a sweep, both counted from 1.
 
     It depends only on these three numbers: ``numpy.random.SeedSequence(seed, spawn_key=(point, member))`` gives 64
     bits, the upper 53 of which are the seed. Every program can represent an integer of 53 bits.
-
-    Parameters
-    ----------
-    seed
-        The seed of the sweep.
-    point, member
-        Numbers of the point and of the member, counted from 1.
 
     Examples
     --------
@@ -263,24 +239,12 @@ def plan(
         A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
     vary
         The texts after each ``--vary``, see `parse_vary`.
-    settings
-        Settings for all runs.
+    settings, engine, accuracy
+        Those of all runs, as for `atmosbox.simulation.preparation.prepare`.
     members
         Number of runs at each point.
     seed
         The seed of the sweep; by default that of the settings.
-    engine, accuracy
-        As for `atmosbox.simulation.preparation.prepare`.
-
-    Returns
-    -------
-    Plan
-        The plan, which `sweep` runs.
-
-    Raises
-    ------
-    AtmosboxError
-        If the scene is unknown, or a setting is refused at any point.
 
     Examples
     --------

@@ -33,18 +33,10 @@ _SUFFIXES = (*_MEASURED, "_by_member", "_by_member_se")
 
 
 def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
-    """Return the mean of the members at each point, and its standard error.
+    """Return the mean of the members at each point, and its standard error, from values and errors (..., member).
 
-    Parameters
-    ----------
-    value, error
-        Values and standard errors of the members, (..., member); NaN where there is none.
-
-    Returns
-    -------
-    mean, standard_error
-        Mean and its standard error, (...). The standard error comes from the scatter of the members or, if there are
-        fewer than `FEWEST`, from their own standard errors, because the scatter of so few says little.
+    The standard error comes from the scatter of the members or, if there are fewer than `FEWEST`, from their own
+    standard errors, because the scatter of so few says little. A value is NaN where there is none.
 
     Examples
     --------
@@ -68,6 +60,11 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
 def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], command: str = "") -> xr.Dataset:
     """Return the runs of a sweep as one dataset.
 
+    For each headline NAME of the scene it has, as functions of the varied settings: ``NAME``, the mean of the members;
+    ``NAME_se``, its standard error; ``NAME_theory`` and ``NAME_tolerance`` if the scene gives them; and
+    ``NAME_by_member`` with ``NAME_by_member_se``, the values of each run. Also seed, status and residual of the
+    energy budget of every run, and the reason if a run failed.
+
     Parameters
     ----------
     plan
@@ -78,21 +75,6 @@ def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], 
         The reason of each run that failed, by point and member.
     command
         The command that the user typed, for the history in the file.
-
-    Returns
-    -------
-    xarray.Dataset
-        For each headline NAME of the scene, as functions of the varied settings: ``NAME``, the mean of the members;
-        ``NAME_se``, its standard error; ``NAME_theory`` and ``NAME_tolerance`` if the scene gives them; and
-        ``NAME_by_member`` with ``NAME_by_member_se``, the values of each run. Also seed, status and residual of the
-        energy budget of every run, and the reason if a run failed.
-
-    Examples
-    --------
-    >>> from atmosbox.sweep.plan import plan
-    >>> grid = join(plan("temperature", ["temperature=0degC,25degC"], members=3), {}, {})
-    >>> dict(grid.sizes), grid.temperature.values.tolist(), int(grid.member_status.max())
-    ({'temperature': 2, 'member': 3}, [273.15, 298.15], 2)
     """
     # The order of the headlines is that of a run that has measured as many as any
     longest = sorted(rows.values(), key=lambda each: -len(each.attrs["names"]))
@@ -177,11 +159,11 @@ def _headline(name: str, about: dict[str, Any], found: list[Floats], dims: tuple
 def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], command: str) -> dict[str, Any]:
     """Return the global attributes of the file of a sweep."""
     engines = " and ".join(sorted({str(each.engine) for each in plan.prepared}))
-    parameters: dict[str, Any] = {"scene": plan.scene, "settings": plan.defaults, "engine": engines}
     vary = {name: list(values) for name, values in plan.vary.items()}
-    grid = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
-    parameters |= {"version": __version__, "save_molecules": False}
-    parameters["sweep"] = grid | {"accuracy": plan.accuracy, "headlines": names}
+    grid: dict[str, Any] = {"vary": vary, "dimensions": dimensions, "members": plan.members, "seed": plan.seed}
+    grid |= {"accuracy": plan.accuracy, "headlines": names}
+    parameters: dict[str, Any] = {"scene": plan.scene, "settings": plan.defaults, "engine": engines}
+    parameters |= {"version": __version__, "save_molecules": False, "sweep": grid}
     *others, last = [name.replace("_", " ") for name in plan.vary]
     return global_attributes(
         parameters,

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming
     from atmosbox.scene.headline import Headline
     from atmosbox.scene.settings import Parameter
-    from atmosbox.simulation.runner import Card, Outcome
+    from atmosbox.simulation.preparation import Card, Prepared
+    from atmosbox.simulation.runner import Outcome
 
 
 def next_command(command: str, path: Path) -> str:
@@ -33,37 +34,23 @@ def next_command(command: str, path: Path) -> str:
 
 def _shown(headline: Headline) -> dict[str, Any]:
     """Return the numbers of a headline in its display unit."""
-    unit = headline.display_unit
-
-    def difference(value: float | None) -> float | None:
-        return None if value is None else from_si(value, unit, difference=True)
-
-    return {
-        "value": from_si(headline.value, unit),
-        "standard_error": difference(headline.standard_error),
-        "theory": None if headline.theory is None else from_si(headline.theory, unit),
-        "difference": difference(headline.misfit),
-        "tolerance": difference(headline.tolerance),
-        "bias": difference(headline.bias),
-        "expected_within": difference(headline.allowed),
-        "chance": difference(headline.chance),
-        "known": difference(headline.known),
-    }
+    unit, theory = headline.display_unit, headline.theory
+    shown: dict[str, Any] = {"value": from_si(headline.value, unit), "standard_error": headline.standard_error}
+    shown |= {"theory": None if theory is None else from_si(theory, unit), "difference": headline.misfit}
+    shown |= {"tolerance": headline.tolerance, "bias": headline.bias, "expected_within": headline.allowed}
+    shown |= {"chance": headline.chance, "known": headline.known}
+    for part, value in shown.items():
+        if value is not None and part not in ("value", "theory"):
+            shown[part] = from_si(value, unit, difference=True)
+    return shown
 
 
 def headline_json(headline: Headline) -> dict[str, Any]:
     """Return a headline as a record for JSON, in the unit in which the table shows it."""
-    return {
-        "name": headline.name,
-        "label": headline.label,
-        "unit": headline.display_unit,
-        **_shown(headline),
-        "reason": headline.excuse,
-        "agrees": headline.agrees,
-        "verdict": headline.verdict,
-        "resolved": headline.resolved,
-        "program": headline.program,
-    }
+    words: dict[str, Any] = {"reason": headline.excuse}
+    words |= {part: getattr(headline, part) for part in ("agrees", "verdict", "resolved", "program")}
+    named = {"name": headline.name, "label": headline.label, "unit": headline.display_unit}
+    return {**named, **_shown(headline), **words}
 
 
 def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
@@ -117,15 +104,8 @@ def _row(headline: Headline) -> list[str]:
     if headline.verdict is None:
         return [_named(headline), found, "", "", "", ""]
     theory = number(shown["theory"], decimals, power) if shown["theory"] else "0"
-    difference = number(shown["difference"], decimals, power, "+")
-    return [
-        _named(headline),
-        found,
-        theory,
-        f"{difference} {slashed(headline.difference_unit)}".rstrip(),
-        headline.shown(headline.allowed, "±"),
-        headline.verdict,
-    ]
+    off = f"{number(shown['difference'], decimals, power, '+')} {slashed(headline.difference_unit)}".rstrip()
+    return [_named(headline), found, theory, off, headline.shown(headline.allowed, "±"), headline.verdict]
 
 
 def _expected(headlines: Sequence[Headline]) -> list[str]:
@@ -154,28 +134,19 @@ def _too_small(headline: Headline) -> str:
     )
 
 
-def ledger_line(ledger: float, limit: float) -> str:
+def ledger_line(ledger: float) -> str:
     """Return a line that says whether the energy budget is closed.
 
     Examples
     --------
-    >>> ledger_line(3.2e-15, 1e-10), ledger_line(4e-6, 1e-10)
+    >>> ledger_line(3.2e-15), ledger_line(4e-6)
     ('energy budget: closed to 3e-15', 'energy budget: not closed, 4e-06 is missing, where at most 1e-10 may be')
     """
-    if ledger <= limit:
+    from atmosbox.simulation.verification import LEDGER_LIMIT
+
+    if ledger <= LEDGER_LIMIT:
         return f"energy budget: closed to {ledger:.0e}"
-    return f"energy budget: not closed, {ledger:.0e} is missing, where at most {limit:.0e} may be"
-
-
-def made_line(made: float) -> str:
-    """Return a line that says how much energy the scheme of an approximate engine has made by itself.
-
-    Examples
-    --------
-    >>> made_line(0.0312)
-    'the scheme itself has made +3.1 % of the energy of motion'
-    """
-    return f"the scheme itself has made {100.0 * made:+.2g} % of the energy of motion"
+    return f"energy budget: not closed, {ledger:.0e} is missing, where at most {LEDGER_LIMIT:.0e} may be"
 
 
 def cost_line(collisions: int, seconds: float) -> str:
@@ -186,37 +157,39 @@ def cost_line(collisions: int, seconds: float) -> str:
     >>> cost_line(1234567, 2.0)
     '1,234,567 collisions in 2.0 s, 620,000 a second'
     """
-    taken = f"{seconds:#.2g}" if seconds < 10.0 else f"{seconds:.0f}"
-    return f"{collisions:,} collisions in {taken} s" + (
-        f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
-    )
+    rate = f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
+    return f"{collisions:,} collisions in {seconds:{'#.2g' if seconds < 10.0 else '.0f'}} s{rate}"
 
 
-def outcome_json(outcome: Outcome, *, scene: str, path: Path, limit: float) -> dict[str, Any]:
+def outcome_json(outcome: Outcome, prepared: Prepared, path: Path) -> dict[str, Any]:
     """Return a run as a record for JSON."""
-    rate = outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None
+    from atmosbox.simulation.verification import LEDGER_LIMIT
+
+    closes = bool(outcome.ledger <= LEDGER_LIMIT)
     return {
-        "scene": scene,
+        "scene": prepared.scene,
         "status": str(outcome.dataset.attrs.get("atmosbox_status", "complete")),
         "file": str(path),
         "headlines": [headline_json(headline) for headline in outcome.headlines],
-        "ledger": {"residual": outcome.ledger, "limit": limit, "closes": bool(outcome.ledger <= limit)},
+        "ledger": {"residual": outcome.ledger, "limit": LEDGER_LIMIT, "closes": closes},
         "energy_made_by_the_scheme": outcome.made,
         "collisions": outcome.collisions,
         "seconds": outcome.seconds,
-        "collisions_per_second": rate,
+        "collisions_per_second": outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None,
         "next": next_command("plot", path),
+        "settings": prepared.settings.as_dict(),
     }
 
 
-def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int, expected: Sequence[str] = ()) -> list[str]:
+def outcome_lines(outcome: Outcome, path: Path, width: int, expected: Sequence[str] = ()) -> list[str]:
     """Return a run as text, with the lines about its expected errors."""
+    made = f"the scheme itself has made {100.0 * outcome.made:+.2g} % of the energy of motion"
     return [
         *headline_lines(outcome.headlines, width),
         "",
         *([*expected, ""] if expected else []),
-        ledger_line(outcome.ledger, limit),
-        *([made_line(outcome.made)] if outcome.made else []),
+        ledger_line(outcome.ledger),
+        *([made] if outcome.made else []),
         cost_line(outcome.collisions, outcome.seconds),
         f"file: {path}",
         f"next: {next_command('plot', path)}",
@@ -265,26 +238,17 @@ def comparison_lines(files: Sequence[str], names: Naming, numbers: Sequence[Comp
     made = [*wrapped(head, columns), *(line for run in runs for line in wrapped(run, columns, indent="  ")), ""]
     if not numbers:
         return [*made, "No number is in both files: each run shows its own with atmosbox check."]
-    rows = []
+    rows, pair = [], len(files) == 2
     for each in numbers:
-        unit = "" if each.unit in ("", "1") else f" [{each.unit}]"
-        if len(files) == 2:
-            rows.append(
-                [each.label + unit, *(_said(each, run) for run in (0, 1)), _changed(each, 1), _by_theory(each, 1)]
-            )
+        what = each.label + ("" if each.unit in ("", "1") else f" [{each.unit}]")
+        if pair:
+            rows.append([what, _said(each, 0), _said(each, 1), _changed(each, 1), _by_theory(each, 1)])
             continue
-        for run, label in enumerate(names.labels):
-            first = run == 0
-            rows.append(
-                [each.label + unit if first else "", label, _said(each, run)]
-                + ["", ""] * first
-                + [_changed(each, run), _by_theory(each, run)] * (not first)
-            )
-    if len(files) == 2:
-        header = ["quantity", *names.labels, "difference", "by theory"]
-    else:
-        header = ["quantity", "run", "measured", "minus the first", "by theory"]
-    return [*made, *table(header, rows, columns)]
+        rows.append([what, names.labels[0], _said(each, 0), "", ""])
+        for run, label in enumerate(names.labels[1:], 1):
+            rows.append(["", label, _said(each, run), _changed(each, run), _by_theory(each, run)])
+    parts = [*names.labels, "difference"] if pair else ["run", "measured", "minus the first"]
+    return [*made, *table(["quantity", *parts, "by theory"], rows, columns)]
 
 
 def _said(each: Compared, run: int) -> str:

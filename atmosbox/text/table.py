@@ -63,14 +63,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narr
 
 def _filled(text: str, size: int, indent: str = "") -> list[str]:
     """Return a text in lines of at most this width; no word is cut."""
-    return textwrap.wrap(
-        text,
-        size,
-        initial_indent=indent,
-        subsequent_indent=indent,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    return textwrap.TextWrapper(size, indent, indent, break_long_words=False, break_on_hyphens=False).wrap(text)
 
 
 def _blocks(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:

@@ -135,10 +135,16 @@ def compile_way(scene: str, way: Way) -> None:
 def run(scene: str, way: Way, seed: int, progress: Callable[[float, str], None] | None = None) -> Trial:
     """Run a scene once in one way with a seed, and return the errors and the cost."""
     prepared = runner.prepare(scene, {**way.settings, "seed": seed}, engine=way.engine)
-    return _trial(runner.execute(prepared, progress=progress), prepared.settings)
+    done = runner.execute(prepared, progress=progress)
+    bounds = done.dataset.elapsed_time_bnds.values
+    lasted = float(bounds[-1, 1] - bounds[0, 0])
+    rate = done.collisions / max(getattr(prepared.settings, "molecules", 1), 1) / lasted if lasted > 0.0 else math.nan
+    cost = float(done.seconds), float(done.engine_seconds), float(done.ledger), float(done.made), int(done.escaped)
+    return Trial(_quantities(done), *cost, rate)
 
 
-def _trial(outcome: Outcome, settings: Any) -> Trial:
+def _quantities(outcome: Outcome) -> dict[str, Quantity]:
+    """Return the errors of a run in its headlines and its curves."""
     quantities: dict[str, Quantity] = {}
     for headline in outcome.headlines:
         # a headline without a statistical error does not depend on the run: for instance theory against a library
@@ -160,12 +166,7 @@ def _trial(outcome: Outcome, settings: Any) -> Trial:
         size = 1.0 if absolute else mean
         errors = ((dataset[name].values - theory) / size).tolist(), (dataset[f"{name}_se"].values / size).tolist()
         quantities[name] = Quantity(f"profile of {name.replace('_', ' ')}", "K" if absolute else "1", mean, *errors)
-    lasted = float(dataset.elapsed_time_bnds.values[-1, 1] - dataset.elapsed_time_bnds.values[0, 0])
-    per_molecule = outcome.collisions / max(getattr(settings, "molecules", 1), 1)
-    return Trial(
-        quantities, float(outcome.seconds), float(outcome.engine_seconds), float(outcome.ledger), float(outcome.made),
-        int(outcome.escaped), per_molecule / lasted if lasted > 0.0 else math.nan,
-    )  # fmt: skip
+    return quantities
 
 
 MOST_RUNS = 64
@@ -242,10 +243,6 @@ def repeat(
         attempt(k, left() if seconds[k] else min(FIRST_SHARE * budget, left()))
     for k, done in enumerate(results):
         if not done and not failed[k]:
-            long = (
-                f"one run takes about {max(seconds[k], 1.0):.0f} s"
-                if seconds[k]
-                else "the budget was spent before it began"
-            )
-            failed[k] = f"left out: {long}"
+            long = f"one run takes about {max(seconds[k], 1.0):.0f} s"
+            failed[k] = f"left out: {long if seconds[k] else 'the budget was spent before it began'}"
     return failed

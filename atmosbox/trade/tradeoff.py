@@ -21,6 +21,7 @@ from atmosbox.engine.core.kernel_cache import source_digest
 from atmosbox.errors import AtmosboxError, FileError, Option, SettingError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
+from atmosbox.file.output_lock import ANOTHER_NAME
 from atmosbox.file.provenance import global_attributes, parameters
 from atmosbox.scene import engines
 from atmosbox.simulation.recording import uninterrupted
@@ -114,13 +115,8 @@ def measure(
         **{f"setting {name}": str(value) for name, value in (settings or {}).items()},
         "ways": [way.label for way in ways],
     }
-    about = {
-        "scene": scene,
-        "request": request,
-        "series": [
-            {"engine": s.engine, "vary": s.vary, "order": dict(s.order), "settings": dict(s.settings)} for s in series
-        ],
-    }
+    told = [{"engine": s.engine, "vary": s.vary, "order": dict(s.order), "settings": dict(s.settings)} for s in series]
+    about: dict[str, Any] = {"scene": scene, "request": request, "series": told}
     results: list[list[Trial]] = [[] for _ in own]
     earlier = ""
     checkpoint = None if out is None else Checkpoint(out, force=force)
@@ -137,6 +133,9 @@ def measure(
     def save() -> None:
         if checkpoint is not None:
             checkpoint(lambda: dataset("partial"))
+
+    def label(share: float, k: int) -> None:
+        tell(share, ways[own[k]].label)
 
     def run(k: int, watch: Progress) -> Trial:
         return timed_run.run(scene, ways[own[k]], seed + len(results[k]), watch)
@@ -157,9 +156,7 @@ def measure(
                 with contextlib.suppress(AtmosboxError):  # the run itself tells what is wrong
                     timed_run.compile_way(scene, way)
             try:
-                left_out = timed_run.repeat(
-                    max(budget - spent, 0.0), results, run, lambda share, k: tell(share, ways[own[k]].label), save
-                )
+                left_out = timed_run.repeat(max(budget - spent, 0.0), results, run, label, save)
             except KeyboardInterrupt:
                 if not any(results):
                     raise
@@ -185,23 +182,15 @@ def _saved(part: Path, asked: Mapping[str, Any]) -> xr.Dataset:
     before = parameters(saved).get("request", {})
     different = [name for name in {**asked, **before} if asked.get(name) != before.get(name)]
     if different:
-        raise FileError(
-            f"{part} has the runs of another tradeoff ({', '.join(different)})",
-            "name another file with ",
-            Option("out"),
-            ", or add ",
-            Option("force", True),
-            " to replace them",
-        )
+        problem = f"{part} has the runs of another tradeoff ({', '.join(different)})"
+        raise FileError(problem, *ANOTHER_NAME, ", or add ", Option("force", True), " to replace them")
     return saved
 
 
 def _trials(text: str) -> list[Trial]:
     """Return runs from the text that a file holds."""
-    return [
-        Trial({name: Quantity(*each) for name, each in quantities.items()}, *rest)
-        for quantities, *rest in json.loads(text)
-    ]
+    runs = json.loads(text)
+    return [Trial({name: Quantity(*each) for name, each in parts.items()}, *rest) for parts, *rest in runs]
 
 
 def _first_alike(ways: Sequence[Way], settings: Any) -> list[int]:
@@ -235,9 +224,8 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
         for q, name in enumerate(names):
             found = [one.quantities[name] for one in done if name in one.quantities]
             if found and len(found) == len(done):  # a quantity that some runs lack has no unbiased mean
-                parts[:, k, q] = _summary(
-                    np.array([one.error for one in found]), np.array([one.noise for one in found])
-                )
+                errors, noises = (np.array([getattr(one, part) for one in found]) for part in ("error", "noise"))
+                parts[:, k, q] = _summary(errors, noises)
 
     def each(reduce: Callable[[list[float]], Any], name: str) -> NDArray[np.float64]:
         return np.array([reduce([abs(getattr(one, name)) for one in done]) if done else np.nan for done in trials])
@@ -272,20 +260,15 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
     for name, values, text in zip(("bias", "bias_se", "noise"), parts, texts, strict=True):
         data[name] = (("rung", "quantity"), values, {"long_name": text})
     theory = "value of theory, in SI units; for a curve the mean of its absolute value"
-    return xr.Dataset(
-        data,
-        coords={
-            "rung": ("rung", [way.label for way in ways], {"long_name": "engine and settings"}),
-            "quantity": ("quantity", names, {"long_name": "what is measured"}),
-            "label": ("quantity", [q.label for q in about], {"long_name": "name in a table"}),
-            "unit": (
-                "quantity",
-                [q.unit for q in about],
-                {"long_name": "unit of bias and noise: K, or 1 for a share of the theory"},
-            ),
-            "theory": ("quantity", [q.theory for q in about], {"long_name": theory}),
-        },
-    )
+    of_quantities: dict[str, tuple[Sequence[Any], str]] = {
+        "quantity": (names, "what is measured"),
+        "label": ([q.label for q in about], "name in a table"),
+        "unit": ([q.unit for q in about], "unit of bias and noise: K, or 1 for a share of the theory"),
+        "theory": ([q.theory for q in about], theory),
+    }
+    coords: dict[str, Any] = {"rung": ("rung", [way.label for way in ways], {"long_name": "engine and settings"})}
+    coords |= {name: ("quantity", each, {"long_name": text}) for name, (each, text) in of_quantities.items()}
+    return xr.Dataset(data, coords=coords)
 
 
 def _summary(error: NDArray[np.float64], own: NDArray[np.float64]) -> tuple[float, float, float]:

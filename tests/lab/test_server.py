@@ -14,7 +14,7 @@ from urllib.parse import urlencode
 
 import pytest
 
-from atmosbox.cli.request import gather, with_fewer_molecules
+from atmosbox.cli.request import Sought, gather, with_fewer_molecules
 from atmosbox.errors import SettingError
 from atmosbox.lab.server import PORT, Server
 from atmosbox.lab.starts import AS_WRITTEN
@@ -130,7 +130,7 @@ def test_a_port_in_use_is_refused_or_the_next_is_taken(site):
     ],
 )
 def test_a_scene_of_many_molecules_begins_with_fewer_and_says_so(scene, values, taken, said, capsys):
-    asked = with_fewer_molecules(gather(scene, values))
+    asked = with_fewer_molecules(gather(Sought(scene, values)))
     assert (asked.settings, asked.engine) == (taken, "exact")
     heard = capsys.readouterr().err
     assert said in heard if said else not heard
