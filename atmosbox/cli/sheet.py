@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 def sheet(
     scene: Annotated[str, SceneName],
     to: Output,
-    answers: Annotated[bool, switch("--answers", "Make the runs, fill in the table and answer the questions.")] = False,
+    answers: Annotated[bool, switch("--answers", "Make the runs, fill in the table, answer the questions.")] = False,
     lab: Annotated[
-        bool, switch("--lab", "Use pages instead of commands: write one for each run, and name its buttons.")
+        bool, switch("--lab", "Use pages, not commands: write one for each run, and name its buttons.")
     ] = False,
     values: ValuesOfAll = None,
     seed: Seed = None,
