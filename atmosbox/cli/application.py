@@ -113,7 +113,7 @@ def _ungrouped(function: Callable[..., None], helps: dict[str, str]) -> Callable
         group = groups.get(name)
         told = {name: each.annotation} if group is None else get_type_hints(group, include_extras=True)
         flat |= {field: (kind, getattr(group, field, each.default)) for field, kind in told.items()}
-    flat.setdefault("verbose", (Verbose, False))
+    flat["verbose"] = flat.pop("verbose", (Verbose, False))
     for name, help in helps.items():
         kind, default = flat[name]
         option = copy.copy(kind.__metadata__[0])
