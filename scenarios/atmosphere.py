@@ -1,8 +1,8 @@
 """Why the air does not fly away, and why it thins with height.
 
-Ten thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the floor. They
-fall, and within ten minutes density and pressure decrease with height by the barometric law: by a factor e every 8.4
-km. The means leave out the first half hour. Each molecule falls freely between collisions, and yet the air neither
+Ten thousand molecules fly in a tall column with real gravity. At the start they are as dense at 20 km as at the floor.
+They fall, and within ten minutes density and pressure decrease with height by the barometric law: by a factor e every
+8.4 km. The means leave out the first half hour. Each molecule falls freely between collisions, and yet the air neither
 collects on the floor nor escapes. The molecules hit the floor, and the force on the floor minus that on the ceiling is
 the weight of the air.
 

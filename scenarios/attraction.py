@@ -9,7 +9,7 @@ Modelled: hard spheres with a square well of range 1.5, whose diameter and depth
 nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. So the substance is like argon:
 its vapour pressure is a third too low at 105 K and a sixth at 142 K, its latent heat an eighth too large at 111 K and a
 fifth at 142 K. It is not like water. The critical temperature of water is four times as high, mostly because of
-hydrogen bonds, which this model does not have. But the vapour pressure of both follows a law of the same form.
+hydrogen bonds, which this model does not have. But the vapour pressure of both liquids follows a law of the same form.
 
 At the start of the default run there is several times as much vapour as is stable: it is cooled so suddenly that drops
 form everywhere at once, and merge (a quench). In a vapour that is barely supersaturated the first drop forms far later.
