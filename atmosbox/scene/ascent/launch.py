@@ -99,7 +99,7 @@ def rise(
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
             "ascent": f"in {duration * scale.time * 1e9:.3g} ns",
             **(
-                {"rain": f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"}
+                {"rain": f"compared with theory if the cloud holds {1000.0 * least_cloud(ascent):.1f} g/kg or more"}
                 if ascent.rains
                 else {}
             ),
