@@ -422,7 +422,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found.append(Headline.of_mean("mean_wind_speed", "speed of the wind", speed, None, "m s-1"))
     share, error = (float(dataset[f"tracer_share_aloft{end}"].values[-1]) for end in ("", "_se"))
     if math.isfinite(share):
-        label = "from the floor to the upper half"
+        label = "marked molecules in the upper half"
         found.append(Headline("share_from_the_floor", share, error, None, 0.0, CHANCE_ALONE, "1", "percent", label))
     last = _linear(dataset, settings)
     if last is not None and not still and box.thin:

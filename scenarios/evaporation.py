@@ -141,7 +141,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "the same for this number of molecules": f"{rest.temperature - 273.15:.2f} degC",
             "wet-bulb temperature": _wet_bulb(settings),
             "time until vapour hits the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
-            "heat lost to the piston": f"up to {start.loss(duration):.1g} K",
+            "cooling because the piston lags": f"up to {start.loss(duration):.1g} K",
         },
         knobs=(walls, open_pool(parcel)),
     )

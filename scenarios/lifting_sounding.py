@@ -190,7 +190,7 @@ def _metpy(settings: Settings) -> tuple[Headline, ...]:
     base = float(law.lcl(ascent.pressure, ascent.temperature, found.dewpoint[0])[0])
     parcel = law.virtual_temperature(path.temperature, path.vapor)
     ours = law.cape_cin(levels, _around(settings, levels)[2], parcel, base)
-    reason = "MetPy leaves out the heat capacity of the vapour, and its EL is not one of virtual temperatures"
+    reason = "MetPy leaves out the heat capacity of the vapour, and uses no virtual temperature for its EL"
     rows = [
         ("metpy_lcl", metpy.lcl.pressure, base, "Pa", "hPa", "condensation level"),
         ("metpy_cape", metpy.cape, ours.cape, "J kg-1", "J kg-1", "CAPE of the pseudo-adiabat"),

@@ -64,7 +64,7 @@ SHOWN = [
     "wind [m/s]",
     "lapse rate of the core [K/km]",
     "heat, over that at rest",
-    "from the floor to above half height [%]",
+    "marked molecules in the upper half [%]",
 ]
 
 

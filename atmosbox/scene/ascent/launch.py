@@ -55,7 +55,7 @@ def rise(
     known = planned.temperature * drift(planned)
     base, rainy = ascent.base, {}
     if ascent.rains:
-        rainy["rain"] = f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"
+        rainy["rain"] = f"compared with theory if the cloud holds {1000.0 * least_cloud(ascent):.1f} g/kg or more"
     return Setup(
         parcel,
         scale,
