@@ -102,23 +102,6 @@ def test_air_that_does_not_attract_keeps_out_of_the_wells():
         assert abs(mean.mean - factor * chance) < 4.0 * mean.standard_error + 0.05 * factor * chance, pair
 
 
-def test_an_unstable_vapour_condenses_and_warms_itself():
-    """Without a bath: 3/2 N dT is the energy released by the wells, to rounding."""
-    number = 300
-    random = np.random.default_rng(5)
-    length = ((number / 0.08) ** (1.0 / 3.0),) * 3
-    velocity = random.normal(size=(number, 3)) * math.sqrt(0.6)
-    gas = AttractingParcelSet(
-        random_positions(length, np.ones(number), random, periodic=(True,) * 3), velocity, length=length, walls=ROUND,
-        well=SquareWell(),
-    )  # fmt: skip
-    kinetic, wells = gas.energy()[0], gas.number_of_wells
-    gas.advance(40.0)
-    assert gas.number_of_wells > 2 * wells
-    assert gas.energy()[0] - kinetic == pytest.approx(gas.number_of_wells - wells, rel=1e-12)
-    assert gas.energy()[0] > 1.2 * kinetic
-
-
 @pytest.mark.parametrize(
     ("well", "kT", "density"),
     [

@@ -125,8 +125,8 @@ def test_neither_a_tenth_less_water_nor_a_pseudo_adiabat_is_within_what_is_allow
 
 
 def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
-    few = {"molecules": 1000}
-    keeps, rains = run("lifting-moist", **few), run("lifting-moist", rain=True, cloud_water=0.0, **few)
+    rain = {"rain": True, "cloud_water": 0.0}
+    keeps, rains = (run("lifting-moist", molecules=1000, **more) for more in ({}, rain))
     is_sound(rains)
     assert "rain_mixing_ratio" not in keeps.dataset
     fallen, held = rains.dataset.rain_mixing_ratio.values, rains.dataset.cloud_liquid_water_mixing_ratio.values
