@@ -45,7 +45,7 @@ def atmosbox_in_process(*words, **environment):
     return typed(*words, **{"COLUMNS": None, **environment})
 
 
-few_frames = few_frames_of({SCENE: (60, 20), "temperature": (60, 20)})
+few_frames = few_frames_of({SCENE: (60, 20)})
 """The runs of the scene in this process have a twentieth of its frames, the ends of which take most of the time."""
 
 
