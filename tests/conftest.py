@@ -33,7 +33,8 @@ os.environ.setdefault("MPLBACKEND", "agg")
 # One thread, as for the command line: threads of linear algebra wait for each other, and the workers have the cores.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# Most objects of a test live no longer than it: Python looks for cycles of them less often, and a twentieth is saved.
+# Python looks less often than usual for objects that refer to each other and to which nothing else refers: to compile a
+# kernel takes a twentieth less.
 gc.set_threshold(100_000, 50, 100)
 
 # No deadline, since a kernel's first call compiles it; and no random seed, so that two runs test the same.
