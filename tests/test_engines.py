@@ -87,7 +87,7 @@ PARTS = [
     ("atmosphere", "stepped:delta=0.8,motion=euler", SMALL, {}, {MOVES, FALLS, WALLS, SCHEME}),
     ("atmosphere", "dsmc", SMALL | {"rotation": True}, {}, {MOVES, SPINS, FALLS, WALLS}),
     ("attraction", "", CLUMP, {"attraction": 0.5}, {MOVES, FALLS, BATH, ATTRACTION}),
-    ("attraction", "", CLUMP | {"bath": "none", "air": 0.1}, {}, {MOVES, FALLS}),
+    ("attraction", "", CLUMP | {"start": "pool", "bath": "none", "air": 0.1}, {}, {MOVES, FALLS}),
     ("attraction", "", CLUMP | {"bath": "walls"}, {}, {MOVES, FALLS, WALLS}),
     ("attraction", "", {"molecules": 200, "heating": 100, "duration": "0.4 ns"}, {}, {MOVES, FALLS, BATH}),
     ("condensation", "", {"molecules": 300}, {}, {MOVES, SPINS, LIQUID, WALLS}),

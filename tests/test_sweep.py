@@ -76,7 +76,7 @@ def build(settings, engine=EXACT):
 QUICK = {"duration": 2.0}
 
 
-few_frames = few_frames_of({"elastic-collisions": (60, 20)})
+few_frames = few_frames_of({"elastic-collisions": (60, 20), "temperature": (60, 20), "atmosphere": (80, 14)})
 """The runs of discs have the few frames that they have in `SCENE`."""
 
 
@@ -242,7 +242,9 @@ def test_a_run_that_fails_is_told_and_takes_no_other_with_it(scene, tmp_path):
     assert sorted(path.name for path in (tmp_path / "discs-sweep").glob("*.nc")) == ["1-1.nc"]
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.nightly)]
+)
 def test_a_stopped_sweep_goes_on_and_finds_the_same(scene, tmp_path, number, status):
     """The third of six runs is stopped; then the same call, and one with more members."""
     file = tmp_path / "a.nc"

@@ -164,6 +164,7 @@ measure("elastic-collisions", ways=DISCS, out=Path("x.nc"), budget=600.0)
 """
 
 
+@pytest.mark.nightly
 def test_a_tradeoff_that_was_killed_goes_on_to_the_same_errors(tmp_path, runs):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)])}
     done = subprocess.run([sys.executable, "-c", KILLED], cwd=tmp_path, env=environment, check=False)

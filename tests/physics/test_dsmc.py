@@ -78,7 +78,7 @@ def test_collisions_make_the_speeds_maxwells():
 
 
 def test_a_column_between_heat_baths_is_barometric_and_isothermal():
-    number, side, layers, kT = 20_000, 20.0, 10, 1.0
+    number, side, layers, kT = 8000, 20.0, 10, 1.0
     walls = (P, P, P, P, HeatBath(kT), HeatBath(kT))
     box = new_gas(number, side, walls=walls, diameter=0.3, gravity=0.1, kT=1.3, seed=43)
     low, high = 0.15, side - 0.15

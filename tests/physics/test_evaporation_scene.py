@@ -131,7 +131,7 @@ def test_what_cannot_be_is_refused_with_what_to_type_instead(settings, words):
 
 
 def test_the_walls_cool_the_air_over_a_pool_and_a_cover_slows_both_rates_alike():
-    prepared = prepare("evaporation", {"molecules": 3000, "pool": 600, "duration": "20 ns"}, engine="exact")
+    prepared = prepare("evaporation", {"molecules": 1500, "pool": 300, "duration": "20 ns"}, engine="exact")
     setup = build(prepared)
     parcel, recording = setup.parcel, Recording(prepared, setup, {})
     walls, cover = setup.knobs

@@ -53,7 +53,7 @@ def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
     box = gas(number, (10.0, 8.0, 10.0), walls=(HeatBath(kT),) * 6, diameter=1e-3, kT=2.0, seed=33)
     box.advance(200.0)
     counts, velocity = [], []
-    for k in range(1000):
+    for k in range(500):
         box.advance(box.time + 5.0)
         here = box.snapshot()
         counts.append([np.histogram(here.position[:, axis], layers, (0.0, box.length[axis]))[0] for axis in range(3)])
