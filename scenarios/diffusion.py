@@ -9,8 +9,8 @@ By default the two gases differ by a label alone, as if half of the air were pai
 mass_ratio the molecules on the right are heavier; 10 is the ratio of argon to helium.
 
 Modelled: hard spheres of one size between smooth end walls; the other sides are periodic: what leaves on one comes in
-on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that some
-thousand of them make the box many mean free paths long. In theory D is that of Chapman and Enskog for a thin gas,
+on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that
+thousands of them make the box many mean free paths long. In theory D is that of Chapman and Enskog for a thin gas,
 divided by Enskog's contact value, plus 2 % because collisions in a denser gas are correlated. Gases of unlike masses
 also conduct heat as they mix, and the light one moves first; theory then is the Boltzmann equation.
 """
