@@ -17,7 +17,7 @@ from atmosbox.text.progress import progress
     "atmosbox animate temperature.nc",
     "atmosbox animate lifting-dry.nc --format mp4 --theme slides --seconds 8",
     "atmosbox animate lifting-dry.nc --graphs --out lift.gif --force",
-    out="The film.  [default: beside FILE, by its name]",
+    out="The film.  [default: beside FILE, named after it]",
     quiet="Show no progress.",
 )
 def animate(

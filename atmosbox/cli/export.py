@@ -18,7 +18,7 @@ Exported = Literal["extxyz", "csv"]
 @command(
     "atmosbox export temperature.nc --format extxyz",
     "atmosbox export lifting-dry.nc --format csv",
-    out="The file.  [default: beside FILE, by its name]",
+    out="The file.  [default: beside FILE, named after it]",
     quiet="Print only the path of the file.",
 )
 def export(

@@ -16,7 +16,7 @@ from atmosbox.cli.terminal import say
     "atmosbox plot lifting-dry.nc --format pdf --theme slides",
     "atmosbox plot lifting-dry.nc --out figures/lift.svg --force",
     "atmosbox plot lifting-dry.nc --with-box",
-    out="The figure.  [default: beside FILE, by its name]",
+    out="The figure.  [default: beside FILE, named after it]",
     quiet="Print only the path of the figure.",
 )
 def plot(

@@ -32,7 +32,7 @@ def sheet(
     to: Output,
     answers: Annotated[bool, switch("--answers", "Make the runs, fill in the table, answer the questions.")] = False,
     lab: Annotated[
-        bool, switch("--lab", "Use pages, not commands: write one for each run, and name its buttons.")
+        bool, switch("--lab", "Use pages, not commands: write one for each run; the sheet names the buttons.")
     ] = False,
     values: ValuesOfAll = None,
     seed: Seed = None,

@@ -19,7 +19,7 @@ MOST = 2
     "atmosbox view temperature.nc",
     "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
     "atmosbox view temperature.nc --language es --force",
-    out="The page.  [default: beside FILE, by its name]",
+    out="The page.  [default: beside FILE, named after it]",
     quiet="Print only the path of the page.",
 )
 def view(

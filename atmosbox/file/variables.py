@@ -277,8 +277,8 @@ layer_temperature_adiabatic | K | height: mean | temperature of the adiabat thro
 # Speeds, bin by bin
 speed_probability_density | s m-1 | speed: mean | share of molecules per unit of speed
 # Two gases that mix
-mixing_amplitude | 1 | time: point | longest wave of the left-right difference of two gases, over that at the start
-mixing_entropy | 1 | time: point | entropy of mixing per molecule, over that of gases that are mixed
+mixing_amplitude | 1 | time: point | amplitude of the longest wave of the difference, divided by that at the start
+mixing_entropy | 1 | time: point | entropy of mixing per molecule, divided by that of fully mixed gases
 left_gas_share_early | 1 | distance: mean | share of the gas from the left, after a tenth of the mixing time
 left_gas_share_middle | 1 | distance: mean | share of the gas from the left, after half the mixing time
 left_gas_share_late | 1 | distance: mean | share of the gas from the left, after twice the mixing time

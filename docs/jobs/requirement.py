@@ -161,7 +161,8 @@ def lifting() -> list[list[str]]:
     slow = sum(SHARES[name][0] * each for name, each in RELAXATION.items()) / sum(SHARES[n][0] for n in RELAXATION)
     delayed = hurry * (1.0 - 5.0 / 3.0 / theory.DISSIPATION) * (slow - 1.0)
     return [
-        ["an hour for the ascent", f"after {rounded(setup.duration * setup.scale.time * 1e9)} ns the parcel is "
+        ["an ascent of an hour; here it takes nanoseconds",
+         f"after {rounded(setup.duration * setup.scale.time * 1e9)} ns the parcel is "
          f"{rounded(hurry)} K too warm, after an hour {rounded(hour)} K"],
         ["vibration", f"it would make air {rounded(vibrating)} K warmer at {top / 100.0:.0f} hPa"],
         ["attraction", f"it moves the adiabat of air by {rounded(attracted)} K"],
@@ -215,7 +216,8 @@ def moist() -> list[list[str]]:
         ["supersaturation in an updraft", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
          f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm in a cubic centimetre; here the delay of the "
          f"vapour makes the parcel up to {rounded(float(lag.max()))} K too cold"],
-        ["an hour for the ascent", f"the parcel is up to {rounded(float(fast.max()))} K too warm"],
+        ["an ascent of an hour; here it takes nanoseconds",
+         f"the parcel is up to {rounded(float(fast.max()))} K too warm"],
         ["clusters of few molecules", f"some molecules condense too early: at the cloud base the parcel is "
          f"{rounded(clusters)} K too warm"],
     ]  # fmt: skip
@@ -234,8 +236,8 @@ def vapour() -> list[list[str]]:
          f"{rounded(-100.0 * nonideal)} % below that of an ideal gas"],
         ["the pressure of the air on the liquid, and air dissolved in it", f"saturated air has "
          f"{rounded(100.0 * enhancement)} % more vapour at {settings.si.pressure / 100.0:.0f} hPa (Buck 1981)"],
-        ["molecules that bounce off the liquid", "measured sticking probabilities lie between 0.1 and 1, here it is 1; "
-         "both rates change alike, and saturation does not"],
+        ["molecules that bounce off the liquid", "measured sticking probabilities lie between about 0.01 "
+         "and 1, here it is 1; both rates change alike, and saturation does not"],
     ]  # fmt: skip
 
 
