@@ -57,8 +57,8 @@ def run(
     """Run a scene and compare the results with theory.
 
     If a setting is given more than once, --seed overrides --set, --set overrides --config, and --config overrides
-    --from. Ctrl-C stops a run and keeps the complete frames in NAME.part.nc. From there --resume goes on, bit for bit as
-    if the run had never been stopped; this works after a crash, too.
+    --from. Ctrl-C stops a run and keeps the complete frames in NAME.part.nc. From there --resume goes on, bit for bit
+    as if the run had never been stopped; this works after a crash, too.
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.file.output_path import run_is_there, unused, whole_path

@@ -50,9 +50,8 @@ def words(command: Any, context: Any) -> list[tuple[str, str, str]]:
             continue
         said = SAID.search(text)
         default = "–" if said is None else said[2] if said[1] else "must be given"
-        rows.append(
-            (f"`{typed.removesuffix(' <str>').removesuffix(' <list[str]>')}`", shown(SAID.sub("", text)), default)
-        )
+        name = typed.removesuffix(" <str>").removesuffix(" <list[str]>")
+        rows.append((f"`{name}`", shown(SAID.sub("", text)), default))
     return rows
 
 

@@ -90,6 +90,7 @@ def new_reservoir(
 
     Examples
     --------
+    >>> from atmosbox.engine.liquid.substance import Pool, Substance
     >>> water = Substance(0.62, 1.0, 20.0, 9.0, 1e6)
     >>> reservoir = new_reservoir(Pool(water, number=5, kT=2.0), 1.0, 8, 3, 0)
     >>> float(reservoir.energy[0]), reservoir.absent.tolist(), int(reservoir.top[0])
