@@ -87,7 +87,10 @@ def temperature() -> list[list[str]]:
             "attraction",
             f"the pressure of real air is {rounded(100.0 * off)} % lower at the same density and temperature",
         ],
-        ["air is a mixture", f"its mean speed is {rounded(100.0 * mixed)} % higher than that of its mean mass"],
+        [
+            "air is a mixture",
+            f"its mean speed is {rounded(100.0 * mixed)} % higher than that of molecules of its mean mass",
+        ],
     ]
 
 
