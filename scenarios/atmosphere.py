@@ -12,9 +12,9 @@ over, and therefore cools with height. Left alone, without sun and radiation, it
 in some 100,000 years. The figure shows both. The scene ``convection`` heats the air from below.
 
 Modelled: molecules in uniform gravity on exact parabolas, periodic sides, a floor that is a heat bath or smooth, a
-smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Up to 5,000 molecules are
-hard spheres; with more, chance decides which of them collide, as often as spheres would. Left out: water, wind,
-sunshine. Each molecule stands for 10^33 or more real ones and is 70 metres or more wide, so that its mean free path is
+smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. With up to 5,000 molecules
+these are hard spheres; with more, chance decides which of them collide, as often as spheres would. Left out: water,
+wind, sunshine. By default each molecule stands for 10^33 real ones and is 70 metres wide, so that its mean free path is
 a given share of the scale height (the Knudsen number). Theory is the barometric law, corrected for such wide molecules:
 hard ones exclude volume, and no centre comes nearer to floor or ceiling than the radius of a molecule, so that a part
 of the lowest and of the highest layer is empty. With ``plane`` the air consists of discs in a plane, which stands for a

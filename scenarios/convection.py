@@ -13,10 +13,10 @@ With ``case`` the same box shows an inversion (the floor is colder than the ceil
 sea breeze (one side is warm, the other cold: wind from the first moment on), or stable air (the same difference of
 temperature with more gravity: the air stays at rest).
 
-Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, one cell deep,
-that may rotate. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water, radiation, the
-rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km. The box is only about a
-hundred molecules high; its air is so viscous that with a real lapse rate it would stay at rest.
+Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, which may
+rotate, in a box one cell deep. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water,
+radiation, the rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km. The box is only
+about a hundred molecules high; its air is so viscous that with a real lapse rate it would stay at rest.
 """
 
 import functools

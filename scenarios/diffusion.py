@@ -2,8 +2,8 @@
 
 One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall between
 them is taken away. Every molecule flies on as before; collisions turn its path into a random walk. Differences
-disappear, small-scale ones first. The last is half a wave between the end walls, which decays as exp(-D (pi/L)^2 t).
-Nothing is lost, but the two gases do not separate again: the entropy of mixing grows to k ln 2 for each molecule.
+disappear, small-scale ones first. The last to disappear is that between left and right, as exp(-D (pi/L)^2 t). Nothing
+is lost, but the two gases do not separate again: the entropy of mixing grows to k ln 2 for each molecule.
 
 By default the two gases differ by a label alone, as if half of the air were painted: this is self-diffusion. With
 mass_ratio the molecules on the right are heavier; 10 is the ratio of argon to helium.
@@ -12,7 +12,7 @@ Modelled: hard spheres of one size between smooth end walls; the other sides are
 on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that
 thousands of them make the box many mean free paths long. In theory D is that of Chapman and Enskog for a thin gas,
 divided by Enskog's contact value, plus 2 % because collisions in a denser gas are correlated. Gases of unlike masses
-also conduct heat as they mix, and the light one moves first; theory then is the Boltzmann equation.
+also conduct heat as they mix, and the light one begins to spread first; theory then is the Boltzmann equation.
 """
 
 import math

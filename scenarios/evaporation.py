@@ -11,10 +11,11 @@ vapour pressure and the temperature at which this happens, and the energy of the
 that the pool cools first and the air follows, and how much the numbers of so few molecules fluctuate.
 
 Modelled: molecules of air and water of real size and density under a piston that keeps the pressure; a pool on the
-floor. Up to 5,000 molecules are hard spheres; with more, chance decides which of them collide. Every molecule of vapour
-that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it at a rate that depends on
-its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no volume; forces between
-molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is needed to remove it.
+floor. With up to 5,000 molecules these are hard spheres; with more, chance decides which of them collide. Every
+molecule of vapour that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it at a
+rate that depends on its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no
+volume; forces between molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is
+needed to remove it.
 """
 
 import math

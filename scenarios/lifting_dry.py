@@ -1,7 +1,7 @@
 """A parcel of dry air rises and cools.
 
 Thousands of molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure in the box
-follows that of the environment of a rising parcel. Only one thing cools the molecules: those that hit the receding
+follows that of the environment of a rising parcel. Only one thing cools the air: molecules that hit the receding
 ceiling come back more slowly. Prescribed are the pressure at each moment and the two rotational degrees of freedom of a
 molecule; the dry adiabat, T ~ p^(2/7), emerges.
 

@@ -8,15 +8,15 @@ Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energ
 pressure at each moment. What emerges is the cloud base, where the parcel becomes saturated as the receding piston cools
 it, and both lapse rates.
 
-Modelled: molecules of air and water that rotate (up to 5,000 are hard spheres; with more, chance decides which of them
+Modelled: molecules of air and water that rotate (hard spheres if there are up to 5,000; with more, chance decides which
 collide); droplets too fine to draw, of one temperature, carried along by the air; the latent heat, which follows from
 the binding energy and the heat capacities; a hydrostatic environment of constant lapse rate. The ascent is reversible:
 the droplets stay in the parcel. With rain=on the cloud keeps a gram per kilogram, and the rest falls out: this is
 nearly pseudo-adiabatic. Left out: ice, the curvature of droplets and what is dissolved in them; gravity inside the
 parcel; mixing with the environment. Exaggerated: some kilometres are climbed within nanoseconds, in a few hundred
 collisions of each molecule; the molecules are larger than those of air; the droplets have far more area than so little
-water could have. Only one molecule in fifty is water, and even below the cloud base some of these are clustered, RH /
-(1 - RH) on average.
+water could have. Only one molecule in fifty is water, and even below the cloud base RH / (1 - RH) molecules are
+clustered on average.
 """
 
 import functools

@@ -2,15 +2,15 @@
 
 Air from the ground is lifted through a sounding: measured by a balloon or, by default, analytic. As long as the parcel
 is denser than the environment, it must be pushed. From the level of free convection up to the equilibrium level it is
-lighter, and would rise by itself. The area between the two curves is the energy that buoyancy can give each kilogram of
-air.
+lighter, and would rise by itself. The area between the curves of both is the energy that buoyancy can give a kilogram
+of air.
 
-Modelled: molecules of air and water (up to 5,000 are hard spheres; with more, chance decides which of them collide);
-droplets too fine to draw, of one temperature, carried along by the air; the environment of the sounding,
-hydrostatic; buoyancy from density temperatures. The ascent is reversible: the droplets stay in the parcel, and their
-weight counts; with rain=on the cloud keeps a gram per kilogram. Left out: ice, the curvature of droplets; mixing with
-the environment, which weakens every real cloud; the parcel's own motion: it is lifted at a steady rate, whatever its
-buoyancy. Exaggerated: some ten kilometres are climbed within nanoseconds.
+Modelled: molecules of air and water (hard spheres if there are up to 5,000; with more, chance decides which collide);
+droplets too fine to draw, of one temperature, carried along by the air; the environment of the sounding, hydrostatic;
+buoyancy from density temperatures. The ascent is reversible: the droplets stay in the parcel, and their weight counts;
+with rain=on the cloud keeps a gram per kilogram. Left out: ice, the curvature of droplets; mixing with the environment,
+which weakens every real cloud; the parcel's own motion: it is lifted at a steady rate, whatever its buoyancy.
+Exaggerated: some ten kilometres are climbed within nanoseconds.
 """
 
 import functools

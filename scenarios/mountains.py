@@ -8,7 +8,7 @@ than it had cooled at that rate. Without rain it would arrive as warm as it left
 Prescribed: the curve e_s(T), the path, and how much cloud rains out and how fast. What emerges is where clouds begin
 and end, how much rain falls, and how warm the parcel arrives.
 
-Modelled: molecules of air and water (up to 5,000 are hard spheres; with more, chance decides which of them collide);
+Modelled: molecules of air and water (hard spheres if there are up to 5,000; with more, chance decides which collide);
 droplets too fine to draw, of one temperature, carried along by the air; rain, which falls out of the cloud with its
 heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind, mixing with the environment,
 heat from the ground and from the sun. Exaggerated: eight kilometres up and down within nanoseconds.
