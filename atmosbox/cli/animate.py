@@ -32,7 +32,7 @@ def animate(
     ] = None,
     fps: Annotated[
         float | None,
-        typer.Option(metavar="N", help="Frames per second.  [default: 10, or 20 where motion is smooth]"),
+        typer.Option(metavar="N", help="Frames per second.  [default: 10, or 20 if molecules move little in a frame]"),
     ] = None,
     graphs: Annotated[bool, switch("--graphs", "Film only the graphs, without the molecules.")] = False,
     theme: Theme = "notes",

@@ -32,7 +32,7 @@ def prepare(
 ) -> None:
     """Compile the engine for all scenes, on all cores.
 
-    Each command compiles what it needs, once; before a class this saves the wait.
+    Each command compiles what it needs, once; prepare does so in advance, for instance before a class.
     """
     from atmosbox import scenarios
     from atmosbox.simulation.compilation import cache_home, compiled_here

@@ -47,7 +47,7 @@ def sweep(
     ] = None,
     members: Annotated[str, text("N", "Number of runs at each point.")] = "1",
     values: option.ValuesOfAll = None,
-    seed: Annotated[str | None, text("N", "Seed, from which that of each run is made.  [default: 1]")] = None,
+    seed: Annotated[str | None, text("N", "Seed from which the seeds of all runs are made.  [default: 1]")] = None,
     engine: option.Engine = None,
     accuracy: option.Accuracy = None,
     jobs: Annotated[str | None, text("N", "Number of processes.  [default: one for each core]")] = None,
@@ -58,7 +58,7 @@ def sweep(
 ) -> None:
     """Run a scene with many settings, to see how its results depend on them.
 
-    Every run is a file in a folder, beside the file that joins them. To go on with a stopped sweep type the same
+    Each run is saved in a folder; one file beside it joins all runs. To go on with a stopped sweep type the same
     command again: finished runs are not repeated. `atmosbox plot` draws the joined file.
     """
     from atmosbox.scene.spelling import assignments

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from atmosbox import scenarios
+from atmosbox.lab.box import lab_box
 from atmosbox.lab.memory_image import parts
 from atmosbox.lab.page_file import lab_text
 from atmosbox.lab.plan import lab_plan
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.starts import served_start
 from atmosbox.lab.theory_table import short_run, tables
-from atmosbox.lab.wasm_module import SCENES
+from atmosbox.lab.wasm_module import SCENES, module_bytes
 from atmosbox.page.lesson import lesson_of
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import build, prepare
@@ -47,6 +48,13 @@ def test_the_same_scene_gives_the_same_memory_wherever_python_keeps_its_arrays()
         images.append(lab_plan(prepared)[1])
         kept.append(np.zeros(37 + 101 * number))  # so that the next arrays lie elsewhere
     assert all(image == images[0] for image in images)
+
+
+def test_every_preset_has_a_box_that_the_page_can_run():
+    for scene, usual in SCENES.items():
+        for preset in lesson_of(scenarios.load(scene)).presets:
+            prepared = prepare(scene, usual | preset.values, engine="exact")
+            assert module_bytes(lab_box(prepared).module, scene)
 
 
 def told_without_molecules(setup):
