@@ -69,7 +69,7 @@ numpydoc_xref_param_type = False
 nitpick_ignore_regex = [
     (r"py:.*", r"(numpy|np|npt|xarray|xr|netCDF4|matplotlib|pathlib|types|typing|collections|os)(\..*)?"),
     (r"py:class", r"ArrayLike|NDArray|Figure|ModuleType|Path|Progress|RunDataset|Show"),
-    (r"py:class", r"(tuple|Mapping)\[str"),  # of an annotation that is split at its bars
+    (r"py:class", r"(tuple|Mapping)\[(str|Parameter)"),  # of an annotation that Sphinx splits
 ]
 
 html_theme = "furo"
