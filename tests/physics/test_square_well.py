@@ -81,7 +81,7 @@ def test_air_that_does_not_attract_keeps_out_of_the_wells():
     number, density, kT = 500, 0.01, 1.0
     species = np.arange(number) % 2
     table = SquareWell(1.5, [[1.0, 0.0], [0.0, 0.0]])
-    between = {"walls": (*ROUND[:4], Specular(), Specular()), "gravity": 1e-12}  # kernels that other tests use
+    between = {"walls": (*ROUND[:4], Specular(), Specular()), "gravity": 1e-12}  # as other tests have: no new kernels
     gas = well_gas(number, density, kT, rate=0.2, seed=3, well=table, species=species, **between)
     near = {(0, 0): [], (0, 1): [], (1, 1): []}
     for frame in range(60):

@@ -134,7 +134,7 @@ def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
 
 
 def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not():
-    # 3.6 K are expected, and with this many molecules the error of the difference is 0.5 K
+    # 5.4 K are expected, and with this many molecules the error of the difference is 0.5 K
     more = {"molecules": 6000, "cloud_water": 2.0}
     outcomes = {rain: run("mountains", rain=rain, **more) for rain in (True, False)}
     for outcome in outcomes.values():
