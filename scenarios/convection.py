@@ -317,17 +317,14 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         if fastest > 0.0
         else "the air stays at rest"
     )
+    flow = Flow(box.rows, box.columns, FRAMES // 2, chimney=settings.tracers == "chimney")
     return Setup(
         parcel,
         scale,
         settings.si.duration / scale.time,
         FRAMES,
-        (
-            Air("floor"),
-            Layers(box.rows, memory, columns=box.columns),
-            Flow(box.rows, box.columns, FRAMES // 2, chimney=settings.tracers == "chimney"),
-        ),
-        samples=8,
+        (Air("floor"), flow, Layers(box.rows, memory, flow=flow)),
+        samples=4,
         settle=SETTLE,
         time_unit="s",
         facts={

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any
 
@@ -53,7 +54,7 @@ class Flow:
         self.release = release
         self.chimney = chimney
         self._tagged = np.zeros(0, np.bool_)
-        self._sum = np.zeros((5, rows * columns))
+        self._cells = self._sum = np.zeros((5, rows * columns))
         self._wind = 0.0
         self._mode = np.zeros((2, MODES))
         self._looks = 0
@@ -69,17 +70,16 @@ class Flow:
         x, z = snapshot.position[:, 0] / float(length[0]), snapshot.position[:, 2] / float(length[2])
         row = np.clip((z * rows).astype(np.int64), 0, rows - 1)
         cell = row * columns + np.clip((x * columns).astype(np.int64), 0, columns - 1)
-        u, w = snapshot.velocity[:, 0], snapshot.velocity[:, 2]
+        u, v, w = snapshot.velocity.T
         number = np.bincount(cell, minlength=cells).astype(np.float64)
         along, up = np.bincount(cell, u, cells), np.bincount(cell, w, cells)
-        twice = np.bincount(cell, np.sum(snapshot.velocity**2, axis=1), cells)
         upright = np.bincount(cell, w * w, cells)
         flat = np.bincount(cell, u * u, cells) + upright
-        held = np.maximum(number, 1.0)
-        drift = (along**2 + up**2) / held
+        deep = 0.0 if parcel.planar else np.bincount(cell, v * v, cells)
+        drift = (along**2 + up**2) / np.maximum(number, 1.0)
         freedom = np.maximum((2.0 if parcel.planar else 3.0) * number - 2.0, 0.0)
-        energy = 0.5 * mass * (twice - drift)
-        self._sum += number, along, up, energy, freedom
+        self._cells = np.stack([number, along, up, 0.5 * mass * (flat + deep - drift), freedom])
+        self._sum = self._sum + self._cells
         pairs = number > 1.0
         self._wind += float(np.sum((along**2 + up**2 - flat)[pairs] / (number[pairs] - 1.0))) / len(u)
         self._sides, self._periodic = np.array(length, np.float64), bool(parcel.periodic[0])
@@ -91,6 +91,10 @@ class Flow:
         amplitude = np.array([phase @ part for phase in phases])
         self._mode += amplitude[0], np.sum(amplitude**2, axis=0) - sum(phase**2 @ alone for phase in phases)
         self._looks += 1
+
+    def layers(self) -> Array:
+        """Return the number, energy of disordered motion and degrees of freedom in the last sample, layer by layer."""
+        return self._cells[[0, 3, 4]].reshape(3, *self.shape).sum(axis=2)
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the fields of a frame, and tag the molecules near the floor when it is time."""
@@ -172,6 +176,7 @@ class Flow:
         return found
 
 
+@functools.cache
 def modes_of_flow(rows: int, columns: int, *, periodic: bool) -> tuple[Array, Array]:
     """Return the modes of the upward wind, by height and across the box: cosines, and sines if it is periodic.
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.engine.core.measure import layer_sample
+from atmosbox.scene.instruments.flow import Flow
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.statistics import average_beside, block_average
 from atmosbox.scene.units import Scale
@@ -29,8 +30,9 @@ class Layers:
         Number of layers; the box must count its virial in as many layers.
     memory
         Correlation time of the energy of the column [reduced time], see `atmosbox.scene.statistics.average_beside`.
-    columns
-        Number of parts of a layer whose mean motion is not counted as warmth: more than one if the air turns over.
+    flow
+        Where the air turns over, the instrument that measures its wind in cells, as many above each other as there are
+        layers; it comes before this one. The mean motion of each cell is not counted as warmth.
     gas
         The name of one of several gases: only number density and temperature are measured then, as
         ``GAS_number_density`` and ``GAS_layer_temperature``, which the scene declares among its ``variables``.
@@ -43,12 +45,13 @@ class Layers:
         number: int,
         memory: float = 0.0,
         *,
-        columns: int = 1,
+        flow: Flow | None = None,
         gas: str = "",
         which: NDArray[np.bool_] | None = None,
     ) -> None:
         self.number = number
-        self.columns = columns
+        self.columns = 1 if flow is None else flow.shape[1]
+        self._flow = flow
         self._gas = gas
         self._which = which
         self.memory = memory
@@ -66,28 +69,17 @@ class Layers:
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules of each layer and sum the energy of their disordered motion."""
+        self._looks += 1
+        if self._flow is not None:
+            self._sum += self._flow.layers()
+            return
         measured: Any = parcel
         if self._which is not None:
             measured = SimpleNamespace(length=parcel.length, planar=parcel.planar, mass=parcel.mass[self._which])
             snapshot = snapshot._replace(
                 position=snapshot.position[self._which], velocity=snapshot.velocity[self._which]
             )
-        if self.columns > 1:
-            # each part of a layer is a layer of its own in a box as much higher
-            high, wide = float(parcel.length[2]), float(parcel.length[0])
-            x, z = snapshot.position[:, 0] / wide, snapshot.position[:, 2] / high
-            row, column = (
-                np.clip((share * parts).astype(np.int64), 0, parts - 1)
-                for share, parts in ((z, self.number), (x, self.columns))
-            )
-            parts = self.number * self.columns
-            measured = SimpleNamespace(length=(1.0, 1.0, parts), planar=parcel.planar, mass=parcel.mass)
-            place = np.stack([x, x, row * self.columns + column + 0.5], axis=1)
-            sums = np.stack(layer_sample(measured, snapshot._replace(position=place), parts))
-            self._sum += sums.reshape(3, self.number, self.columns).sum(axis=2)
-        else:
-            self._sum += np.stack(layer_sample(measured, snapshot, self.number))
-        self._looks += 1
+        self._sum += np.stack(layer_sample(measured, snapshot, self.number))
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the sums of a frame."""
