@@ -66,8 +66,9 @@ def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
     Notes
     -----
     Compared with measured water (:func:`saturation_vapor_pressure_iapws`) it is too low: by 0.06 % at -10 degC, 0.20 %
-    at 20, 0.44 % at 40 and 2.2 % at 100 degC, because the heat capacities of real water change with temperature. MetPy
-    1.7 uses the same formula of the same paper, with 4.03 k for the vapour: their agreement to 0.03 % confirms neither.
+    at 20, 0.44 % at 40 and 2.2 % at 100 degC, because real vapour is not an ideal gas, and 611.2 Pa is 0.07 % too low.
+    MetPy 1.7 uses the same formula of the same paper, with 4.03 k for the vapour: their agreement to 0.03 % confirms
+    neither.
 
     Examples
     --------

@@ -85,7 +85,8 @@ def temperature() -> list[list[str]]:
     return [
         [
             "attraction",
-            f"the pressure of real air is {rounded(100.0 * off)} % lower at the same density and temperature",
+            f"the pressure of real air is {rounded(100.0 * off)} % below that of spheres of the same density and "
+            "temperature",
         ],
         [
             "air is a mixture",
@@ -105,8 +106,8 @@ def atmosphere() -> list[list[str]]:
     standard = float(theory.isa_pressure(at))
     own = {name: air.scale_height * DRY_AIR.molar_mass / molar / 1000.0 for name, (_, molar) in SHARES.items()}
     return [
-        ["sunshine, radiation, wind", f"{isothermal / 100.0:.0f} hPa at 10 km, in the standard atmosphere "
-         f"{standard / 100.0:.0f} hPa: {rounded(100.0 * (isothermal / standard - 1.0))} %"],
+        ["sunshine, radiation, wind", f"the pressure at 10 km is {isothermal / 100.0:.0f} hPa, in the standard "
+         f"atmosphere {standard / 100.0:.0f} hPa: {rounded(100.0 * (isothermal / standard - 1.0))} % too much"],
         ["air above the ceiling", f"the ceiling replaces it: it pushes back with "
          f"{rounded(si.surface_pressure * math.exp(-air.height) / 100.0)} hPa, the weight of this air"],
         ["gravity falls with height", f"the air weighs {rounded(200.0 * held / EARTH)} % too much"],
@@ -124,8 +125,9 @@ def discs() -> list[list[str]]:
     restitution = 0.95
     left = math.exp(-0.5 * (1.0 - restitution**2) * met)
     return [
-        ["loss at a collision", f"with a restitution of {restitution}, {rounded(100.0 * left)} % of the energy would "
-         f"be left after the {met:.0f} collisions of a disc in a run: the law shown is that of molecules, not of pucks"]
+        ["loss at a collision", f"with a coefficient of restitution of {restitution}, {rounded(100.0 * left)} % of the "
+         f"energy would be left after the {met:.0f} collisions of a disc in a run: the law shown is that of molecules, "
+         "not of pucks"]
     ]  # fmt: skip
 
 
@@ -170,7 +172,7 @@ def lifting() -> list[list[str]]:
         ["vibration", f"it would make air {rounded(vibrating)} K warmer at {top / 100.0:.0f} hPa"],
         ["attraction", f"it moves the adiabat of air by {rounded(attracted)} K"],
         ["the true size of molecules", f"their excluded volume moves the adiabat by "
-         f"{rounded(spheres_arrive(si.diameter, start, bottom, top, 5))} K, with the true size by "
+         f"{rounded(spheres_arrive(si.diameter, start, bottom, top, 5))} K, that of molecules of the true size by "
          f"{rounded(spheres_arrive(DRY_AIR.diameter, start, bottom, top, 5))} K"],
         ["rotation exchanges energy slowly", f"in air after {rounded(slow)} collisions, here at each; in so fast an "
          f"ascent this would add {rounded(delayed)} K, in an hour nothing"],
@@ -210,15 +212,15 @@ def moist() -> list[list[str]]:
          "cumulus the air above 2 km comes on average from well above the cloud base (Yeo and Romps 2013, "
          "[doi:10.1175/JAS-D-12-0144.1](https://doi.org/10.1175/JAS-D-12-0144.1))"],
         ["ice", f"if all {rounded(1000.0 * liquid)} g/kg of liquid froze at {top / 100.0:.0f} hPa and "
-         f"{end - 273.15:.0f} °C, at {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
+         f"{rounded(end - 273.15)} °C, at {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
          f"{rounded(frozen)} K warmer"],
-        ["rain (at the default)", f"the pseudo-adiabat ends {rounded(end - float(pseudo.temperature[0]))} K colder "
+        ["rain (off by default)", f"the pseudo-adiabat ends {rounded(end - float(pseudo.temperature[0]))} K colder "
          "than the reversible one; a run with `rain=on` ends nearly as cold"],
         ["the weight of the droplets", f"lowers the buoyancy as if the parcel were {rounded(end * liquid)} K "
          "colder; the temperature stays the same"],
         ["supersaturation in an updraft", f"{rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
-         f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm in a cubic centimetre; here the delay of the "
-         f"vapour makes the parcel up to {rounded(float(lag.max()))} K too cold"],
+         f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm radius in a cubic centimetre; here the delay "
+         f"of the vapour makes the parcel up to {rounded(float(lag.max()))} K too cold"],
         ["an ascent of an hour; here it takes nanoseconds",
          f"the parcel is up to {rounded(float(fast.max()))} K too warm"],
         ["clusters of few molecules", f"some molecules condense too early: at the cloud base the parcel is "

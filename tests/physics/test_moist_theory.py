@@ -39,7 +39,7 @@ def test_the_iapws_vapour_pressure_gives_the_check_values_of_its_release():
 
 
 def test_the_prescribed_vapour_pressure_is_up_to_half_a_percent_below_that_of_measured_water():
-    # what docs/model.md says, in percent; heat capacities of real water change with temperature
+    # what docs/model.md says, in percent; real vapour is not an ideal gas
     stated = {-10: -0.06, 0: -0.07, 10: -0.12, 20: -0.20, 30: -0.30, 40: -0.44}
     for celsius, percent in stated.items():
         t = ZERO_CELSIUS + celsius
