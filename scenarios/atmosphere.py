@@ -9,7 +9,7 @@ the weight of the air.
 The temperature becomes the same at all heights, because the air is left alone. A molecule that rises loses speed, but
 only fast ones get there: fewer arrive, with the same mean energy. A real atmosphere is heated from below: it turns
 over, and therefore cools with height. Left alone, without sun and radiation, it would become isothermal like this one
-in some 100,000 years. The figure shows both. The scene ``convection`` heats the air from below.
+in some 100,000 years. The figure shows both temperatures. The scene ``convection`` heats the air from below.
 
 Modelled: molecules in uniform gravity on exact parabolas, periodic sides, a floor that is a heat bath or smooth, a
 smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. With up to 5,000 molecules

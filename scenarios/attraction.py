@@ -14,9 +14,9 @@ hydrogen bonds, which this model does not have. But the vapour pressure of both 
 At the start of the default run there is several times as much vapour as is stable: it is cooled so suddenly that drops
 form everywhere at once, and merge (a quench). In a vapour that is barely supersaturated the first drop forms far later.
 
-With ``heating`` the thermostat around a drop becomes warmer, and the heat that it gives is counted: the temperature
-rises, hardly rises while the drop evaporates, and rises again. Other defaults then apply: 400 molecules, a drop at
-85 K, density 0.1, 3 ns.
+With ``heating`` the thermostat around a drop becomes warmer, and the heat that it gives is counted: plotted against
+the heat, the temperature rises slowly while the drop evaporates, and steeply when only vapour is left. Other defaults
+then apply: 400 molecules, a drop at 85 K, density 0.1, 3 ns.
 """
 
 import json

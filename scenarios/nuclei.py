@@ -13,9 +13,9 @@ emerges is the vapour pressure over each drop (the laws of Kelvin and of Koehler
 Modelled: hard molecules of air and water at real density, drops that molecules hit and leave one by one. Left out: the
 time in which salt dissolves, and forces of its ions on water; the change of surface tension with the radius (a drop of
 sixty molecules has no sharp surface); gravity. Drops are at rest and have the temperature of the walls: their nuclei
-take up the latent heat. It slows the growth of real drops. Exaggerated: molecules hit drops as if these were drop_size
-times as wide, which changes how soon drops grow, but not which of them do. The grains are far smaller than those in the
-atmosphere, and need far more vapour.
+take up the latent heat. In real drops this heat slows the growth. Exaggerated: molecules hit drops as if these were
+drop_size times as wide, which changes how soon drops grow, but not which of them do. The grains are far smaller than
+those in the atmosphere, and need far more vapour.
 """
 
 import itertools
