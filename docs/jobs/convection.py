@@ -18,8 +18,8 @@ LINEAR = 0.3
 CERTAIN = 3.29
 """Number of standard errors that a difference exceeds by chance in one of a thousand cases."""
 DISCS = (
-    *((molecules, 1000.0, seed) for molecules in (2000, 4000, 14_000) for seed in (1, 2)),
-    *((7300, 4000.0, seed) for seed in (1, 2, 5)),
+    *((molecules, 1000.0, 1) for molecules in (2000, 4000, 14_000)),
+    *((7300, 4000.0, seed) for seed in (1, 2)),
 )
 """Numbers of discs, durations [s] and seeds."""
 SPHERES = ((25_000, 2000.0), (50_000, 1500.0), (100_000, 1200.0))
