@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @command(
     "atmosbox lab temperature",
-    "atmosbox lab temperature --set molecules=800 --out warm.html",
+    "atmosbox lab temperature --set temperature=50degC --out warm.html",
     "atmosbox lab --all --out labs/",
     out="The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]",
     quiet="Print only the path of the page.",
