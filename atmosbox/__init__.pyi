@@ -33,7 +33,7 @@ def run(
     duration: float | str = 20.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""What temperature is: the motion of molecules.
+    r"""Temperature measures the motion of molecules.
 
     molecules: number of molecules; 1 to 1000000
     temperature [degC]: temperature of the walls; -270 degC to 2000 degC
@@ -63,7 +63,7 @@ def run(
     duration: float | str = 20.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""What temperature is, with four times as many molecules.
+    r"""Temperature, with four times as many molecules.
 
     molecules: number of molecules; 1 to 1000000
     temperature [degC]: temperature of the walls; -270 degC to 2000 degC

@@ -9,8 +9,7 @@
 
 The exit status is 1 if a run disagrees with theory, if a page quotes what no job computes, if a job computes
 what no page quotes, with --check, if a page would change, or, with --list --stale, if a job is stale. The numbers are
-those of fixed seeds: they come out the same, to the last digit, on processors of one kind; on another kind molecules go
-other ways, and the last digits differ.
+those of fixed seeds: they come out the same on every computer, but for times.
 A job is stale if the code that its numbers depend on has changed since (jobs/source.py says what that is). There is no
 way to call it fresh but to run it.
 """

@@ -1,4 +1,4 @@
-"""What temperature is: the motion of molecules.
+"""Temperature measures the motion of molecules.
 
 Molecules of air at their real density fly in a cube some nanometres wide, whose six walls are warm. The molecules start
 cold. One that hits a wall leaves it with a random speed that corresponds to the temperature of the wall. So the gas

@@ -1,4 +1,4 @@
-"""What temperature is, with four times as many molecules.
+"""Temperature, with four times as many molecules.
 
 This is `temperature` in a wider cube, so the molecules take a little longer to become as warm as the walls. The
 thermometer scatters half as much, by 9 K for eight hundred molecules: the scatter falls as one over the square root of

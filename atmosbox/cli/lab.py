@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @command(
     "atmosbox lab temperature",
-    "atmosbox lab temperature --set molecules=800 --out warm.html",
+    "atmosbox lab temperature --set temperature=50degC --out warm.html",
     "atmosbox lab --all --out labs/",
     out="The page, or the folder of all.  [default: SCENE-lab.html in this folder, or labs]",
     quiet="Print only the path of the page.",
@@ -42,8 +42,8 @@ def lab(
     """Write a page in which a scene runs: the engine itself, in the browser.
 
     The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed given
-    here, and gives the same numbers as run with them. Its knobs act at once; of other settings it offers as many
-    values as fit into the page. In the page that live opens, all settings can be changed.
+    here, and computes what run computes with them on the engine exact. Its knobs act at once; of other settings it
+    offers as many values as fit into the page. In the page that live opens, more settings can be changed.
     """
     if every:
         from atmosbox.simulation.link import check_nothing_changes

@@ -37,8 +37,8 @@ def live(
 ) -> None:
     """Open a page in which a scene runs: change one thing at a time and see what happens.
 
-    It is the page that lab writes, with all settings of the scene: for a changed setting, the page asks atmosbox for a
-    new start. Only this computer can open it, and the address has a token that is new each time.
+    It is the page that lab writes, with more settings: for a changed setting, the page asks atmosbox for a new start.
+    Only this computer can open it, and the address has a token that is new each time.
     """
     if port is not None and not 1 <= port <= 65_535:
         raise SettingError("port", port, "is not a port from 1 to 65535", Option("port", 8642))

@@ -51,7 +51,8 @@ Engine = Annotated[
     str | None,
     text(
         "NAME[:OPTION=VALUE,...]",
-        "The engine: exact, or an approximate one such as stepped:delta=0.02.  [default: that of the scene]",
+        "The engine: exact, or an approximate one such as stepped:delta=0.02.  "
+        "[default: that of the scene; in a page exact]",
     ),
 ]
 Accuracy = Annotated[

@@ -32,7 +32,7 @@ def sheet(
     to: Output,
     answers: Annotated[bool, switch("--answers", "Make the runs, fill in the table, answer the questions.")] = False,
     lab: Annotated[
-        bool, switch("--lab", "Use pages, not commands: write one for each run; the sheet names the buttons.")
+        bool, switch("--lab", "Use a page for each run instead of commands, and write these pages beside the sheet.")
     ] = False,
     values: ValuesOfAll = None,
     seed: Seed = None,

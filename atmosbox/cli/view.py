@@ -30,10 +30,9 @@ def view(
     theme: PageTheme = "auto",
     language: Language = "auto",
 ) -> None:
-    """Show the molecules of a run in three dimensions, and its graphs at the same time of the run.
+    """Write a page that plays a run: the molecules in three dimensions, and the graphs.
 
-    The page is one HTML file, which opens in a browser without a network. Two runs are side by side and show the same
-    time.
+    The page is one HTML file, which opens in a browser without a network. Two runs stand side by side, with one clock.
     """
     if len(files) > MOST:
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")
