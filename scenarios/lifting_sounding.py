@@ -10,7 +10,7 @@ droplets too fine to draw, of one temperature, carried along by the air; the env
 buoyancy from density temperatures. The ascent is reversible: the droplets stay in the parcel, and their weight counts;
 with rain=on the cloud keeps a gram per kilogram. Left out: ice, the curvature of droplets; mixing with the environment,
 which weakens every real cloud; the parcel's own motion: it is lifted at a steady rate, whatever its buoyancy.
-Exaggerated: some ten kilometres are climbed within nanoseconds.
+Exaggerated: fourteen kilometres are climbed within nanoseconds.
 """
 
 import functools
