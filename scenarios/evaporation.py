@@ -10,10 +10,10 @@ no influence on it. In the end as many molecules come back as leave, because no 
 vapour pressure and the temperature at which this happens, and the energy of the molecules that leave. It also shows
 that the pool cools first and the air follows, and how much the numbers of so few molecules fluctuate.
 
-Modelled: molecules of air and water of real size and density under a piston that keeps the pressure; a pool on the
-floor. With up to 5,000 molecules these are hard spheres; with more, chance decides which of them collide. Every
-molecule of vapour that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it at a
-rate that depends on its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no
+Modelled: molecules of air and water, with the diameter and density of air, under a piston that keeps the pressure; a
+pool on the floor. With up to 5,000 molecules these are hard spheres; with more, chance decides which of them collide.
+Every molecule of vapour that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it
+at a rate that depends on its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no
 volume; forces between molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is
 needed to remove it.
 """
@@ -149,7 +149,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _wet_bulb(settings: Settings) -> str:
-    """Return the final temperature over a very large pool, or why there is none."""
+    """Return the wet-bulb temperature of the air at the start, or why there is none."""
     if settings.humidity > 100.0:
         return "none: the air is supersaturated"
     si = settings.si
@@ -260,7 +260,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         headline="mean_liquid_temperature", start=settings.temperature, **log,
     )  # fmt: skip
     wet = over_time(
-        "Until the air is saturated",
+        "The air becomes saturated",
         {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
         "vapour pressure", "hPa", headline="final_humidity", **log,
     )  # fmt: skip

@@ -156,7 +156,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             **parcel_facts(scale, sides),
             "gamma": "7/5" if settings.rotation else "5/3",
             "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
-            "finite speed": f"theory is {warmth:.2g} K above the adiabat at the top",
+            "finite speed": f"warms the parcel by {warmth:.2g} K at the top",
         },
         knobs=(altitude(parcel, driver, lambda share: environment.height(share * duration * scale.time)),),
         ends=True,
@@ -219,7 +219,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         Line("dry_air_adiabat_temperature", height, "dry air, γ = 7/5", "reference"),
     )
     picture = atmosphere_panel("The parcel expands", tuple(f"temperature_at_{p:.0f}_hpa" for p in _levels(settings)))
-    title = "It cools by ten degrees per kilometre" if settings.rotation else "It cools"
+    title = "It cools along the dry adiabat" if settings.rotation else "It cools"
     shown, start = lines[:3] if settings.rotation else lines, (settings.temperature, 0.0)
     return (
         replace(picture, start=(settings.temperature, settings.pressure)),

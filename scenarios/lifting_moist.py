@@ -1,8 +1,8 @@
 """A parcel of moist air rises past its cloud base.
 
-Below its cloud base the parcel cools along the dry adiabat, by ten degrees per kilometre. At the lifting condensation
-level more molecules begin to condense than evaporate, and each that condenses releases its binding energy: from there
-on the parcel cools along the moist adiabat, at first half as fast.
+Below its cloud base the parcel cools along the dry adiabat, by ten degrees per kilometre. Above the lifting
+condensation level more molecules condense than evaporate, and each that condenses releases its binding energy: there
+the parcel cools along the moist adiabat, at first half as fast.
 
 Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and the
 pressure at each moment. What emerges is the cloud base, where the parcel becomes saturated as the receding piston cools

@@ -1,9 +1,10 @@
 """Temperature measures the motion of molecules.
 
-Molecules of air at their real density fly in a cube some nanometres wide, whose six walls are warm. The molecules start
-cold. One that hits a wall leaves it with a random speed that corresponds to the temperature of the wall. So the gas
-becomes as warm as the walls within a fraction of a nanosecond. The speeds then follow Maxwell's law, and the impacts on
-the walls add up to the pressure n k T Z, where Z is a little more than 1 because molecules have a size.
+Molecules of air at their real density fly in a cube some twenty nanometres wide, whose six walls are warm. The
+molecules start cold. One that hits a wall leaves it with a random speed that corresponds to the temperature of the
+wall. So the gas becomes as warm as the walls within a fraction of a nanosecond. The speeds then follow Maxwell's law,
+and the impacts on the walls add up to the pressure n k T Z, where Z is a little more than 1 because molecules have a
+size.
 
 Modelled: hard spheres of the mass and the diameter of air, which leave the walls with random velocities. Left out:
 gravity (over twenty nanometres its effect is too small to be seen), rotation (it does not change how fast molecules
