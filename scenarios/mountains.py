@@ -144,7 +144,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     adiabat = Line(time, "adiabat_temperature", "theory", "theory")
     around = Line(time, "environment_temperature", "environment", "environment")
     warm = over_time(
-        "It arrives warmer than it set out" if rains else "It arrives as warm as it set out",
+        "It arrives warmer than it started" if rains else "It arrives as warm as it started",
         {"parcel_temperature": "parcel"}, "temperature", "degC", more=(adiabat, around),
         headline="arrival_temperature", start=start, guides=(("y", start, ""),),
         note="The ascents take nanoseconds in the box, and hours in the Alps.",

@@ -136,13 +136,13 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     time, walls, noise = "elapsed_time", "air_temperature_theory", "air_temperature_noise"
     density = "speed_probability_density"
     temperature = over_time(
-        "Molecules become as warm as the walls",
+        "Molecules reach the temperature of the walls",
         {"air_temperature": "molecules"}, "temperature", "degC",
         more=(Line(time, walls, "walls ± expected scatter", "theory", error=noise),),
         log=True, parts=60, headline="mean_temperature", start=settings.start_temperature,
     )  # fmt: skip
     pressure = over_time(
-        "Their impacts are the pressure", {"air_pressure": "six walls"}, "pressure", "hPa",
+        "Impacts on the walls make the pressure", {"air_pressure": "six walls"}, "pressure", "hPa",
         theory="n k T, molecules of finite size", log=True, parts=60, headline="mean_pressure",
     )  # fmt: skip
     measured = Line("speed", density, "molecules", error=f"{density}_se")

@@ -346,7 +346,7 @@ def test_the_titles_of_scenes_are_true_of_their_settings():
         return [panel.title for panel in scene.panels(scene.Settings(**settings))]
 
     assert "Too dry for a cloud" in titles("lifting-moist", dewpoint=-60.0)
-    assert "It arrives as warm as it set out" in titles("mountains", rain=False)
+    assert "It arrives as warm as it started" in titles("mountains", rain=False)
     assert "Discs alike: the same energy" in titles("elastic-collisions", mass_ratio=1.0)
 
 

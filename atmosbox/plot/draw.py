@@ -133,8 +133,10 @@ def draw(axes: Axes, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, cur
     entries, most = curves(axes, panel, theme)
     if panel.areas and len(runs) == 1:
         x, y, _ = curve(runs[0], panel, panel.lines[0])
-        for name, sign in (("CAPE", 1.0), ("CIN", -1.0)):
-            area = axes.fill_betweenx(y, np.where(sign * x > 0.0, x, 0.0), zorder=0.8, **AREAS[name])
+        # above the highest level where it rises by itself, a parcel is not inhibited: it has passed the EL
+        below = np.arange(x.size) <= np.flatnonzero(x > 0.0).max(initial=-1)
+        for name, shown in (("CAPE", x > 0.0), ("CIN", (x < 0.0) & below)):
+            area = axes.fill_betweenx(y, np.where(shown, x, 0.0), zorder=0.8, **AREAS[name])
             entries.append(((area,), name))
     set_limits(axes, panel, most)
     if len(runs) == 1:

@@ -576,7 +576,7 @@ def test_a_question_is_answered_in_the_language_that_is_chosen_and_the_box_goes_
     title = page.locator(".graph strong").first
     assert title.inner_text() == "Temperature"  # its title tells the result
     page.get_by_role("button", name="doubles").click()
-    assert title.inner_text() == "Molecules become as warm as the walls"
+    assert title.inner_text() == "Molecules reach the temperature of the walls"
     assert page.locator(".predict .why").inner_text().startswith("No. Pressure is proportional")
     page.select_option("#language", "de")
     shown.until(lambda: page.locator(".predict .why").inner_text().startswith("Nein. Der Druck ist proportional"))
