@@ -237,12 +237,11 @@ def test_a_second_run_gets_a_number_and_loses_nothing(folder):
     assert {name: Path(name).read_bytes() for name in before} == before
 
 
-def test_two_runs_at_once_write_two_files(folder, monkeypatch):
-    """The second begins when the first, another process, has its name but no file yet."""
-    lock = folder / f".{SCENE}.nc.lock"
-    lock.write_text(json.dumps({"pid": 1, "host": output_lock.host(), "since": "today"}), encoding="utf-8")
-    monkeypatch.setattr(output_lock, "hold", lambda opened: None)
+def test_two_runs_at_once_write_two_files(folder):
+    """The second begins when the first has its name but no file yet."""
+    lock = output_lock.OutputLock(folder / f"{SCENE}.nc")
     assert atmosbox_in_process(*SHORT, "--quiet").stdout == f"{SCENE}-2.nc\n"
+    lock.release()
 
 
 def test_a_dry_run_shows_everything_and_writes_nothing(folder, no_computing):

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import typer
 
@@ -33,49 +33,42 @@ def check(
     status is 3 if anything fails.
     """
     from atmosbox.file.netcdf import read
-    from atmosbox.simulation import runner
+    from atmosbox.simulation.verification import Check, verify
 
-    checks = runner.verify(read(file))
-    cf = conventions(Path(file))
-    passed = all(one.passed for one in checks) and cf.passed is not False
+    checks = verify(read(file))
+    cf = Check("conventions", *conventions(Path(file)))
+    passed = all(one.passed is not False for one in (*checks, cf))
     if as_json:
-        listed = [{"name": c.name, "passed": bool(c.passed), "sentence": c.sentence} for c in checks]
-        say_json({"file": file, "passed": passed, "checks": listed, "conventions": cf._asdict()})
+        listed = [one._asdict() for one in checks]
+        told = {"passed": cf.passed, "sentence": cf.sentence}
+        say_json({"file": file, "passed": passed, "checks": listed, "conventions": told})
     else:
         verdict = {True: "ok", False: "FAILED", None: "not tried"}
-        rows = [[verdict[bool(one.passed)], one.name, one.sentence] for one in checks]
-        rows.append([verdict[cf.passed], "conventions", cf.sentence])
+        rows = [[verdict[one.passed], one.name, one.sentence] for one in (*checks, cf)]
         say("\n".join(table(["", "", ""], rows, width())))
     if not passed:
         raise typer.Exit(PhysicsError.exit_code)
 
 
-class Conventions(NamedTuple):
-    """Whether a file follows the CF conventions; ``passed`` is None if that could not be checked."""
-
-    passed: bool | None
-    sentence: str
-
-
-def conventions(path: Path) -> Conventions:
-    """Check with the program compliance-checker, if it is installed, whether a file follows CF-1.11."""
+def conventions(path: Path) -> tuple[bool | None, str]:
+    """Return whether a file follows CF-1.11, by the program compliance-checker, None without it; and a sentence."""
     # A compliance-checker beside this Python is preferred to another that a shell would find.
     places = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     program = shutil.which(CHECKER, path=places)
     if program is None:
-        return Conventions(None, f"{CHECKER} is not installed: type pip install 'atmosbox[test]'")
+        return None, f"{CHECKER} is not installed: type pip install 'atmosbox[test]'"
     command = [program, "-t", CONVENTION, "-c", "strict", "-f", "json", "-o", "-", str(path.resolve())]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", check=False)
     last = (done.stderr.strip() or done.stdout.strip() or "it says nothing").splitlines()[-1]
     try:
-        found = _messages(json.loads(done.stdout)[CONVENTION])
+        wrong = _messages(json.loads(done.stdout)[CONVENTION])
     except (ValueError, KeyError, TypeError):
-        return Conventions(None, f"{CHECKER} does not work here: {last}")
-    if found:
-        return Conventions(False, "; ".join(found))
+        return None, f"{CHECKER} does not work here: {last}"
+    if wrong:
+        return False, "; ".join(wrong)
     if done.returncode:  # it found nothing wrong, but one of its own tests has failed
-        return Conventions(None, f"{CHECKER} does not work for this file: {last}")
-    return Conventions(True, "the file keeps to the CF-1.11 conventions, to the letter")
+        return None, f"{CHECKER} does not work for this file: {last}"
+    return True, "the file keeps to the CF-1.11 conventions, to the letter"
 
 
 def _messages(report: dict[str, Any]) -> list[str]:

@@ -142,11 +142,6 @@ FIGURES = (".png", ".svg", ".pdf")
 _LONGEST = 100  # characters of a name that is made of the names of all files
 
 
-def is_path(scene: str) -> bool:
-    """Return whether a scene is given by the path of its file rather than by its name."""
-    return scene.endswith(".py") or "/" in scene or os.sep in scene
-
-
 def for_scene(scene: str, ending: str = ".nc") -> Path:
     """Return the default path, in this folder, of an output file of a scene.
 
@@ -155,7 +150,9 @@ def for_scene(scene: str, ending: str = ".nc") -> Path:
     >>> str(for_scene("lifting_dry")), str(for_scene("./my_scene.py", "-sweep.nc"))
     ('lifting-dry.nc', 'my_scene-sweep.nc')
     """
-    return Path((Path(scene).stem if is_path(scene) else scene.replace("_", "-")) + ending)
+    from atmosbox import scenarios
+
+    return Path((Path(scene).stem if scenarios.is_path(scene) else scene.replace("_", "-")) + ending)
 
 
 def beside(files: Sequence[str], kind: str) -> Path:

@@ -119,8 +119,6 @@ class Checkpoint:
     def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
         """Write the run so far if it is time to, and return whether it was written."""
         now = self._clock()
-        if self._lock is not None:
-            self._lock.keep()
         expected = self._spent + 1.5 * self._last  # the file has grown since
         if now - self._written < self._every or expected > SHARE * (now - self._begun):
             return False

@@ -25,10 +25,10 @@ _GIVEN_BEFORE = ("work_by_stirring",)
 
 
 class Check(NamedTuple):
-    """One check of a file and its result."""
+    """One check of a file and its result; ``passed`` is None if it could not be made."""
 
     name: str
-    passed: bool
+    passed: bool | None
     sentence: str
 
 
@@ -96,15 +96,12 @@ def verify(dataset: xr.Dataset) -> list[Check]:
     frames = int(dataset.sizes.get("elapsed_time", 0))
     what = f"the sweep is {status}" if "member" in dataset.sizes else f"the run is {status}, with {frames} frames"
     checks.append(Check("complete", status == "complete", what))
-    bad = [
-        str(name)
-        for name, values in dataset.variables.items()
-        if values.dtype.kind == "f" and np.isinf(values.values).any()
-    ]
+    floats = {name: each for name, each in dataset.variables.items() if each.dtype.kind == "f"}
+    bad = [str(name) for name, each in floats.items() if np.isinf(each.values).any()]
     checks.append(Check("finite", not bad, f"infinite numbers in {', '.join(bad)}" if bad else "no number is infinite"))
     if "ledger_residual" in dataset:
         worst = float(np.max(dataset["ledger_residual"].values)) if frames else math.nan
-        closed = worst <= LEDGER_LIMIT
+        closed = bool(worst <= LEDGER_LIMIT)
         said = f"closed to {worst:.0e}" if closed else f"not closed: {worst:.0e} is missing"
         checks.append(Check("ledger", closed, f"the energy budget of the run is {said}"))
         checks.append(_balance(dataset))
@@ -127,7 +124,7 @@ def _balance(dataset: xr.Dataset) -> Check:
 
     terms = {name: dataset[name].values for name in (*STORES, *GIVEN, *_GIVEN_BEFORE) if name in dataset}
     worst = float(np.max(residual(terms))) if dataset.sizes["elapsed_time"] else math.nan
-    passed = worst <= LEDGER_LIMIT
+    passed = bool(worst <= LEDGER_LIMIT)
     what = f"energy minus heat{', what the scheme made' if 'numerical_heat' in terms else ''} and work"
     said = f"is{'' if passed else ' not'} constant: it changes by {worst:.0e} of it{' at most' if passed else ''}"
     return Check("balance", passed, f"{what} {said}")
