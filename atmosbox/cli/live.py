@@ -49,7 +49,7 @@ def live(
     from atmosbox.text.progress import progress
 
     token = None if no_token else secrets.token_urlsafe(16)
-    with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(prepared, show):
+    with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(show):
         server = Server(prepared, port=port, token=token, language=language)
 
     def opened() -> None:

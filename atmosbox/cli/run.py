@@ -12,7 +12,7 @@ from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import DryRun, Result, Sought, Verbose, for_scene, netcdf_name, switch, text
 from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, tell, width
-from atmosbox.errors import AtmosboxError, FileError, PhysicsError
+from atmosbox.errors import AtmosboxError, FileError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
@@ -65,6 +65,8 @@ def run(
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time
     from atmosbox.simulation.restart import read_state
+    from atmosbox.simulation.verification import check_ledger
+    from atmosbox.text.report import next_command
 
     restart = None
     with prints_to_stderr():
@@ -108,13 +110,8 @@ def run(
     if numbered:
         to.say_number(path, checkpoint.path)
     _say_outcome(outcome, prepared, checkpoint.path, to)
-    if not outcome.ledger <= runner.LEDGER_LIMIT:
-        from atmosbox.text.report import next_command
-
-        raise PhysicsError(
-            f"The energy budget of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
-            f"type {next_command('check', checkpoint.path)} to see what else is."
-        )
+    look = next_command("check", checkpoint.path)
+    check_ledger(outcome.ledger, "this run", f"type {look} to see what else is")
 
 
 def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, to: Result) -> None:

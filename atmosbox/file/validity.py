@@ -38,9 +38,9 @@ def free_memory() -> float:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
                 return 1024.0 * int(line.split()[1])
-        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (OSError, ValueError, AttributeError):
-        return math.inf
+    except (OSError, ValueError):
+        pass
+    return math.inf
 
 
 def check_valid(file: netCDF4.Dataset, source: Path) -> None:
@@ -83,22 +83,16 @@ def _parsed(text: object) -> Any:
 
 def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> None:
     """Refuse a declared variable that does not agree with its declaration."""
-    numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
     declared = known(name)
     if declared is None:
         return
-    if numeric == (declared.dtype == "U"):
-        found, wanted = ("numbers", "text") if numeric else ("text", "numbers")
-        raise FileError(f"{source} holds {found} in {name}, where {wanted} belong: run the scene again.")
+    numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
     dims = held.dimensions[: None if numeric else -1]  # the last one of a text is its length
-    # a headline is one number, and the axis of a sweep; both may have the name of a variable, as gravity has
-    if dims not in (declared.dims, (), (name,)):
-        found = " x ".join(dims)
-        raise FileError(f"{source} holds {name} as {found}, and not as atmosbox writes it: run the scene again.")
     sizes = held.group().dimensions
-    empty = [dim for dim in held.dimensions if dim not in ("elapsed_time", "drop") and not sizes[dim].size]
-    if empty and numeric:
-        raise FileError(f"{source} holds {name} of no {empty[0]}: run the scene again.")
+    empty = numeric and any(not sizes[dim].size for dim in dims if dim not in ("elapsed_time", "drop"))
+    # a headline is one number, and the axis of a sweep; both may have the name of a variable, as gravity has
+    if empty or numeric == (declared.dtype == "U") or dims not in (declared.dims, (), (name,)):
+        raise FileError(f"{source} holds {name}, and not as atmosbox writes it: run the scene again.")
     for needed in {"units", "flag_meanings"} & declared.attributes().keys():
         if not isinstance(getattr(held, needed, None), str):
             raise FileError(f"{source} does not say the {needed} of {name}: run the scene again.")

@@ -14,28 +14,25 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
 
-_USUAL = 15.0  # seconds, if this machine has not compiled the scene yet
+_USUAL = 15.0  # seconds that a compilation takes
 _BREATH = 0.2
 _NEVER_DONE = 0.97
-_FILE = "seconds.json"
 
 
 @contextlib.contextmanager
-def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Callable[[], float]]:
+def told(tell: Callable[[float, str], None]) -> Iterator[Callable[[], float]]:
     """Report the progress of compilation while a block runs, if anything is compiled in the block.
 
-    The expected time is that of the last compilation of the scene on this machine. `tell` is called with the completed
-    share and a sentence, from a separate thread while the compiler works. Yields a function that returns the processor
-    time of the compiler so far [s].
+    `tell` is called with the expected share and a sentence, from a separate thread while the compiler works. Yields a
+    function that returns the processor time of the compiler so far [s].
 
     Examples
     --------
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> with told(prepare("temperature", {}), print) as spent:
+    >>> with told(print) as spent:
     ...     spent()
     0.0
     """
-    name = f"{prepared.scene} {prepared.engine.name}"
+    sentence = f"compiling the engine, once on this computer: about {_USUAL:.0f} s"
     before, began, depth = 0.0, 0.0, 0
     over = threading.Event()
     teller: threading.Thread | None = None
@@ -43,20 +40,18 @@ def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Cal
     def spent() -> float:
         return before + (time.process_time() - began if depth else 0.0)
 
-    def go_on_telling(expected: float, sentence: str) -> None:
+    def go_on_telling() -> None:
         while not over.wait(_BREATH):
             if depth:
-                tell(min(spent() / expected, _NEVER_DONE), sentence)
+                tell(min(spent() / _USUAL, _NEVER_DONE), sentence)
 
     def watch(kernel: str, begins: bool) -> None:
         nonlocal before, began, depth, teller
         before, began = spent(), time.process_time()
         depth = max(depth + (1 if begins else -1), 0)
         if begins and teller is None:
-            expected = _known().get(name, _USUAL)
-            sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
             tell(0.0, sentence)
-            teller = threading.Thread(target=go_on_telling, args=(expected, sentence), daemon=True)
+            teller = threading.Thread(target=go_on_telling, daemon=True)
             teller.start()
 
     try:
@@ -66,8 +61,6 @@ def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Cal
         over.set()
         if teller is not None:
             teller.join()
-        if spent() > 1.0:
-            remember(_FILE, _known() | {name: round(spent(), 1)})
 
 
 def compile_kernels(prepared: Prepared) -> float:
@@ -75,7 +68,7 @@ def compile_kernels(prepared: Prepared) -> float:
 
     The box is built as for a run, since the kernels depend on it, and advanced by a very short time.
     """
-    with told(prepared, lambda share, sentence: None) as spent:
+    with told(lambda share, sentence: None) as spent:
         setup = build(prepared)
         setup.parcel.advance(0.0)
         step = getattr(setup.parcel, "time_step", 0.0)
@@ -93,12 +86,6 @@ def compiled_here() -> int:
     """Return the number of bytes of machine code that are stored for the present engine."""
     folder = cache_folder()
     return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
-
-
-def _known() -> dict[str, float]:
-    """Return the seconds that compilations took, by scene and engine."""
-    known = remembered(_FILE)
-    return {k: float(v) for k, v in known.items() if isinstance(v, int | float)} if isinstance(known, dict) else {}
 
 
 def remembered(name: str) -> Any:

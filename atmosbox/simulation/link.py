@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 _LONGEST = 200_000  # characters
 _MOST_TURNS = 5_000
 _MOST_FRAMES = 1_000_000
-_SAID = 20  # turns that the comment of a file names
 _LINK = re.compile(
     r"atmosbox=(?P<version>[\w.+-]{1,30})&scene=(?P<scene>[\w.%~-]{1,300})(?P<settings>(?:&\w+=[\w.%~-]*)*)"
     r"&seed=(?P<seed>[0-9]{1,16})(?:&turns=(?P<turns>[\w:,.+-]+))?(?:&predict=(?P<prediction>[\w:,.+-]+))?"
@@ -109,18 +108,11 @@ class Replay:
         ]  # fmt: skip
         if not told:
             return {}
-        words = [
-            f"at {t['elapsed_time']:.6g} {t['time_unit']} {t['name']} "
-            + ("as at the start" if t["value"] is None else f"= {t['value']:g} {t['unit']}".strip())
-            for t in told[:_SAID]
-        ]
-        more = [f"and {len(told) - _SAID} more, in atmosbox_turns"] if len(told) > _SAID else []
         panels = map(without_headlines, from_json(others["atmosbox_panels"]))
         return {
             "atmosbox_turns": json.dumps(told),
             "atmosbox_panels": to_json(panel for panel in panels if panel is not None),
-            "comment": f"Knobs turned: {'; '.join([*words, *more])}. Averages begin after the last. "
-            + str(others.get("comment", "")),
+            "comment": f"Knobs were turned, see atmosbox_turns; averages begin after the last. {others['comment']}",
         }
 
 

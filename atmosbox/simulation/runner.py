@@ -114,7 +114,7 @@ def execute(
             with uninterrupted():
                 checkpoint.load_libraries()
             stack.callback(checkpoint.begin().release)
-        with told(prepared, tell):
+        with told(tell):
             setup = build(prepared)
             setup.parcel.advance(0.0)
         for sentence in setup.doubts:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, PhysicsError
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import Headline
 from atmosbox.simulation.accuracy import ExpectedError
@@ -25,11 +25,19 @@ _GIVEN_BEFORE = ("work_by_stirring",)
 
 
 class Check(NamedTuple):
-    """One check of a file and its result; ``passed`` is None if it could not be made."""
+    """One check of a file and its result."""
 
     name: str
-    passed: bool | None
+    passed: bool
     sentence: str
+
+
+def check_ledger(residual: float, whose: str, remedy: str) -> None:
+    """Refuse a run whose energy budget is not closed."""
+    if not residual <= LEDGER_LIMIT:
+        raise PhysicsError(
+            f"The energy budget of {whose} is off by {residual:.0e}, more than {LEDGER_LIMIT:.0e}: {remedy}."
+        )
 
 
 def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> tuple[Headline, ...]:
