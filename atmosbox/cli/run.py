@@ -63,7 +63,7 @@ def run(
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.file.output_path import run_is_there, unused, whole_path
     from atmosbox.simulation import runner
-    from atmosbox.simulation.expected_time import expected_time
+    from atmosbox.simulation.expected_time import expected_time, in_words
     from atmosbox.simulation.restart import read_state
     from atmosbox.simulation.verification import check_ledger
     from atmosbox.text.report import next_command
@@ -93,7 +93,7 @@ def run(
         tell(f"note: {part} is left from a run that was stopped, and will be replaced")
     try:
         hint = None if restart is not None or replay is not None else expected_time(prepared)
-        words = "" if hint is None else str(hint)
+        words = "" if hint is None else in_words(hint)
         with prints_to_stderr(), progress(prepared.scene, quiet=to.quiet, expected=words) as show:
             outcome = runner.execute(
                 prepared, checkpoint=checkpoint, progress=show, command=typed(ctx), restart=restart, strict=strict
@@ -132,7 +132,7 @@ def _describe(prepared: Prepared, path: Path, to: Result | None) -> None:
     """Print what is going to run: on stdout for a dry run, otherwise on stderr."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
     from atmosbox.simulation import runner
-    from atmosbox.simulation.expected_time import expected_time
+    from atmosbox.simulation.expected_time import expected_time, in_words
     from atmosbox.text.report import setting_lines
 
     with prints_to_stderr():
@@ -145,7 +145,7 @@ def _describe(prepared: Prepared, path: Path, to: Result | None) -> None:
         "",
         *setting_lines(settings, card.parameters, width()),
         "",
-        *table(["", ""], [*facts, *([] if hint is None else [("a run takes", str(hint))])], width()),
+        *table(["", ""], [*facts, *([] if hint is None else [("a run takes", in_words(hint))])], width()),
         *(["", *expected] if expected else []),
         "",
         f"file: {path}" + (" (not written: this is a dry run)" if to else ""),
@@ -154,7 +154,7 @@ def _describe(prepared: Prepared, path: Path, to: Result | None) -> None:
         return tell("\n".join(lines))
     record: dict[str, Any] = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
     record |= {"engine": str(prepared.engine), "accuracy": expectation_json(prepared.expectation)}
-    record |= {"expected_seconds": hint and hint.seconds, "settings": settings, "facts": dict(card.facts)}
+    record |= {"expected_seconds": hint, "settings": settings, "facts": dict(card.facts)}
     to.say(path, record, lines)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import mmap
@@ -34,12 +35,10 @@ _JSON: dict[str, type | tuple[type, ...]] = {
 
 def free_memory() -> float:
     """Return the number of bytes of free memory; infinite if the system does not say."""
-    try:
+    with contextlib.suppress(OSError, ValueError):
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
                 return 1024.0 * int(line.split()[1])
-    except (OSError, ValueError):
-        pass
     return math.inf
 
 

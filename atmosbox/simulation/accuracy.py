@@ -207,12 +207,9 @@ class Expectation:
         way, errors = self.way, {}
         for name, error in way.errors.items():
             errors[name] = {**error._asdict(), "total": error.total, "label": self.labels[name]}
-        made: dict[str, Any] = {
-            "wish": None if self.target is None else self.target.text,
-            "met": self.met,
-            "engine": way.engine,
-        }
-        made |= {"settings": dict(way.settings), "cost": way.cost, "members": way.members}
+        wish = None if self.target is None else self.target.text
+        made = {"wish": wish, "met": self.met, "engine": way.engine, "settings": dict(way.settings)}
+        made |= {"cost": way.cost, "members": way.members}
         return {**made, "differs": list(self.differs), "errors": errors}
 
 

@@ -1,15 +1,12 @@
-"""Compilation of the kernels before a first run: its progress, its expected time, and compilation in advance."""
+"""Compilation of the kernels before a first run: its progress, and compilation in advance."""
 
 from __future__ import annotations
 
 import contextlib
-import json
-import os
 import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
@@ -86,22 +83,3 @@ def compiled_here() -> int:
     """Return the number of bytes of machine code that are stored for the present engine."""
     folder = cache_folder()
     return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
-
-
-def remembered(name: str) -> Any:
-    """Return what a file beside the machine code holds; None if it cannot be read."""
-    home = cache_home()
-    try:
-        return json.loads((home / name).read_text(encoding="utf-8")) if home else None
-    except (OSError, ValueError):
-        return None
-
-
-def remember(name: str, held: object) -> None:
-    """Store something beside the machine code; an error is ignored, because nothing depends on these files."""
-    home = cache_home()
-    if home is not None:
-        new = home / f"{name}.{os.getpid()}"
-        with contextlib.suppress(OSError):
-            new.write_text(json.dumps(held), encoding="utf-8")
-            new.replace(home / name)

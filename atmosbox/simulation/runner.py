@@ -16,7 +16,6 @@ from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
-from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.link import check_nothing_changes, read_link
 from atmosbox.simulation.preparation import Prepared, agreed, build, card, prepare, replayed
 from atmosbox.simulation.recording import Recording, uninterrupted
@@ -130,10 +129,7 @@ def execute(
             put_back(restart, recording)
             if recording.frames >= frames:
                 raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
-        done = _recorded(recording, frames, checkpoint, tell)
-    if prepared.replay is None:
-        remember_pace(prepared, done.engine_seconds)
-    return done
+        return _recorded(recording, frames, checkpoint, tell)
 
 
 def _recorded(recording: Recording, frames: int, checkpoint: Checkpoint | None, tell: Progress) -> Outcome:
