@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.scene.target import TARGETS
@@ -43,9 +43,10 @@ def expectation_lines(
         header, rows = header[:-1], [row[:-1] for row in rows]
     lines += table(header, rows, width)
     if expectation.differs:
-        where = ", ".join(_setting(way.settings, name) for name in expectation.differs)
+        known = way.settings
+        other = (said(name, known[name]) if name in known else f"the default of {name}" for name in expectation.differs)
         lines += wrapped(
-            f"These errors were measured at other settings, with {where}; here they may be different.", width
+            f"These errors were measured at other settings, with {', '.join(other)}; here they may be different.", width
         )
     return lines
 
@@ -55,11 +56,6 @@ def _meaning(target: Target) -> str:
     if target.text not in TARGETS:
         return ""
     return f" ({'the most accurate that was measured' if target.best else target.limits})"
-
-
-def _setting(settings: Mapping[str, Any], name: str) -> str:
-    """Return a setting with its value in the measurement of the errors."""
-    return said(name, settings[name]) if name in settings else f"the default of {name}"
 
 
 def _shown(error: ExpectedError, size: float, sign: str = "") -> str:

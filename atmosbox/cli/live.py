@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import secrets
-import signal
 import sys
 import threading
 import webbrowser
@@ -15,7 +14,7 @@ import typer
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Language, Sought, switch, text
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
-from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
+from atmosbox.cli.terminal import prints_to_stderr, say, tell
 from atmosbox.errors import Option, SettingError
 
 
@@ -67,7 +66,7 @@ def live(
 
     with server:
         number = ended(server, opened)
-    raise typer.Exit(TERMINATED if number == signal.SIGTERM else INTERRUPTED)
+    raise typer.Exit(128 + number)
 
 
 def _display() -> bool:

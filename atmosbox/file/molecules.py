@@ -140,9 +140,7 @@ def _falls(dataset: xr.Dataset) -> bool:
     if "potential_energy" not in dataset:
         return False
     potential = dataset["potential_energy"].values
-    if "attraction_energy" not in dataset:
-        return bool(potential.any())
-    wells = dataset["attraction_energy"].values
+    wells = dataset["attraction_energy"].values if "attraction_energy" in dataset else 0.0
     return bool((np.abs(potential - wells) > 1e-9 * np.abs(potential).max(initial=0.0)).any())
 
 

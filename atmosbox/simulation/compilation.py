@@ -1,9 +1,8 @@
-"""Compilation of the kernels before a first run: its progress, and compilation in advance."""
+"""Compilation of the kernels before a first run: what is said of it, and compilation in advance."""
 
 from __future__ import annotations
 
 import contextlib
-import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -11,66 +10,39 @@ from pathlib import Path
 from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
 
-_USUAL = 15.0  # seconds that a compilation takes
-_BREATH = 0.2
-_NEVER_DONE = 0.97
+_SENTENCE = "compiling the engine, once on this computer: about 15 s"
 
 
 @contextlib.contextmanager
-def told(tell: Callable[[float, str], None]) -> Iterator[Callable[[], float]]:
-    """Report the progress of compilation while a block runs, if anything is compiled in the block.
+def told(tell: Callable[[float, str], None]) -> Iterator[None]:
+    """Say that the engine is compiled if anything is compiled while a block runs.
 
-    `tell` is called with the expected share and a sentence, from a separate thread while the compiler works. Yields a
-    function that returns the processor time of the compiler so far [s].
-
-    Examples
-    --------
-    >>> with told(print) as spent:
-    ...     spent()
-    0.0
+    `tell` is called with the share that is done, zero, and a sentence.
     """
-    sentence = f"compiling the engine, once on this computer: about {_USUAL:.0f} s"
-    before, began, depth = 0.0, 0.0, 0
-    over = threading.Event()
-    teller: threading.Thread | None = None
-
-    def spent() -> float:
-        return before + (time.process_time() - began if depth else 0.0)
-
-    def go_on_telling() -> None:
-        while not over.wait(_BREATH):
-            if depth:
-                tell(min(spent() / _USUAL, _NEVER_DONE), sentence)
+    said = False
 
     def watch(kernel: str, begins: bool) -> None:
-        nonlocal before, began, depth, teller
-        before, began = spent(), time.process_time()
-        depth = max(depth + (1 if begins else -1), 0)
-        if begins and teller is None:
-            tell(0.0, sentence)
-            teller = threading.Thread(target=go_on_telling, daemon=True)
-            teller.start()
+        nonlocal said
+        if not said:
+            said = True
+            tell(0.0, _SENTENCE)
 
-    try:
-        with compilations(watch):
-            yield spent
-    finally:
-        over.set()
-        if teller is not None:
-            teller.join()
+    with compilations(watch):
+        yield
 
 
 def compile_kernels(prepared: Prepared) -> float:
-    """Compile the kernels of a scene unless they are stored already; return the processor time that it took [s].
+    """Compile the kernels of a scene; return the processor time that it took [s], zero if they are stored already.
 
     The box is built as for a run, since the kernels depend on it, and advanced by a very short time.
     """
-    with told(lambda share, sentence: None) as spent:
+    began, compiled = time.process_time(), []
+    with told(lambda share, sentence: compiled.append(sentence)):
         setup = build(prepared)
         setup.parcel.advance(0.0)
         step = getattr(setup.parcel, "time_step", 0.0)
         setup.parcel.advance(max(2.0 * step, 1e-4 * setup.frame))
-    return spent()
+    return time.process_time() - began if compiled else 0.0
 
 
 def cache_home() -> Path | None:
