@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from atmosbox.cli.application import command, typed
-from atmosbox.cli.option import DryRun, Result, Sought, Verbose, for_scene, netcdf_name, switch, text
+from atmosbox.cli.option import DryRun, Result, Sought, for_scene, netcdf_name, switch, text
 from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, tell, width
 from atmosbox.errors import AtmosboxError, FileError
@@ -52,7 +52,6 @@ def run(
     ] = None,
     strict: Annotated[bool, switch("--strict", "Refuse a doubtful sounding instead of giving a warning.")] = False,
     dry_run: DryRun = False,
-    verbose: Verbose = False,
 ) -> None:
     """Run a scene and compare the results with theory.
 
@@ -86,8 +85,6 @@ def run(
     if dry_run:
         return _describe(prepared, unused(path, run_is_there) if numbered else path, to)
     checkpoint = Checkpoint(path, force=to.force, numbered=numbered)
-    if verbose:
-        _describe(prepared, checkpoint.path, None)
     part = checkpoint.part
     if checkpoint.stale and not to.quiet and (resume is None or Path(resume).resolve() != part.resolve()):
         tell(f"note: {part} is left from a run that was stopped, and will be replaced")
@@ -128,8 +125,8 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, to: Result) -
     to.say(path, record, lines)
 
 
-def _describe(prepared: Prepared, path: Path, to: Result | None) -> None:
-    """Print what is going to run: on stdout for a dry run, otherwise on stderr."""
+def _describe(prepared: Prepared, path: Path, to: Result) -> None:
+    """Print what would run."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time, in_words
@@ -148,10 +145,8 @@ def _describe(prepared: Prepared, path: Path, to: Result | None) -> None:
         *table(["", ""], [*facts, *([] if hint is None else [("a run takes", in_words(hint))])], width()),
         *(["", *expected] if expected else []),
         "",
-        f"file: {path}" + (" (not written: this is a dry run)" if to else ""),
+        f"file: {path} (not written: this is a dry run)",
     ]
-    if to is None:
-        return tell("\n".join(lines))
     record: dict[str, Any] = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
     record |= {"engine": str(prepared.engine), "accuracy": expectation_json(prepared.expectation)}
     record |= {"expected_seconds": hint, "settings": settings, "facts": dict(card.facts)}

@@ -208,7 +208,7 @@ class Expectation:
         for name, error in way.errors.items():
             errors[name] = {**error._asdict(), "total": error.total, "label": self.labels[name]}
         wish = None if self.target is None else self.target.text
-        made = {"wish": wish, "met": self.met, "engine": way.engine, "settings": dict(way.settings)}
+        made: dict[str, Any] = {"wish": wish, "met": self.met, "engine": way.engine, "settings": dict(way.settings)}
         made |= {"cost": way.cost, "members": way.members}
         return {**made, "differs": list(self.differs), "errors": errors}
 

@@ -114,7 +114,7 @@ def with_state(dataset: xr.Dataset, recording: Recording) -> xr.Dataset:
         return dataset
     head = json.dumps({"about": described(recording.prepared), "text": state.text}).encode()
     content = io.BytesIO()
-    np.savez(content, np.frombuffer(head, np.uint8), **state.memory)
+    np.savez(content, np.frombuffer(head, np.uint8), **state.memory)  # type: ignore[arg-type]  # no name is a parameter
     words = {"long_name": "state of the run, from which atmosbox run --resume goes on"}
     blob = np.frombuffer(content.getbuffer(), np.uint8)
     return dataset.assign({STATE: xr.Variable((f"{STATE}_byte",), blob, words, {"dtype": "u1"})})
