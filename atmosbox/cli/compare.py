@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Result, Theme, beside
+from atmosbox.cli.option import FigureFormat, Result, Theme, beside
 from atmosbox.cli.terminal import tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.report import comparison_lines
@@ -28,10 +28,7 @@ if TYPE_CHECKING:
 def compare(
     files: Annotated[list[str], typer.Argument(metavar="FILE FILE...", help="Two to six runs.")],
     to: Result,
-    format: Annotated[
-        Literal["png", "svg", "pdf"] | None,
-        typer.Option(help="The format, where the name of the figure does not say it."),
-    ] = None,
+    format: FigureFormat = None,
     theme: Theme = "notes",
 ) -> None:
     """Compare runs in one figure, and show by how much their numbers differ.

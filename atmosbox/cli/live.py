@@ -53,7 +53,6 @@ def live(
 
     def opened() -> None:
         say(server.address)
-        sys.stdout.flush()
         used = server.server_address[1]
         if port is None and used != PORT:
             tell(f"note: port {PORT} is in use, so the page is at port {used}")

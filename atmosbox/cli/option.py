@@ -62,6 +62,10 @@ Accuracy = Annotated[
         "a run, such as 0.5K or 2%.",
     ),
 ]
+FigureFormat = Annotated[
+    Literal["png", "svg", "pdf"] | None,
+    typer.Option(help="The format, where the name of the figure does not say it."),
+]
 Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]
 Language = Annotated[
     Literal["auto", "en", "de", "es"],

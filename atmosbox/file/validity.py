@@ -56,15 +56,15 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     if declared > max(SMALL, 0.5 * free_memory()):
         problem = f"{source} holds {much}, for which {free_memory() / 1e9:.3g} GB of free memory are too few"
         raise FileError(f"{problem}: run the scene with fewer molecules or frames.")
-    for name, kind in _JSON.items():
-        if name in file.ncattrs() and not isinstance(_parsed(file.getncattr(name)), kind):
+    held = {name: _parsed(file.getncattr(name)) for name in _JSON if name in file.ncattrs()}
+    for name, content in held.items():
+        if not isinstance(content, _JSON[name]):
             raise FileError(f"The attribute {name} of {source} is not as atmosbox writes it: run the scene again.")
-    named = _parsed(file.getncattr("atmosbox_headlines")) if "atmosbox_headlines" in file.ncattrs() else []
-    for name in named:
+    for name in held.get("atmosbox_headlines", ()):
         if not isinstance(name, str) or name not in file.variables:
             raise FileError(f"{source} lacks {shown(name)}, which its headlines name: run the scene again.")
-    for name, held in file.variables.items():
-        _check_variable(name, held, source)
+    for name, variable in file.variables.items():
+        _check_variable(name, variable, source)
 
 
 def _bytes(held: netCDF4.Variable[Any]) -> float:
