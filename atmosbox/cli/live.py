@@ -70,6 +70,4 @@ def live(
 
 def _display() -> bool:
     """Return whether there is a screen on which a browser can open; a browser inside the terminal is not wanted."""
-    if sys.platform in ("darwin", "win32"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -73,7 +73,8 @@ class Checkpoint:
     def _name(self, wanted: AnyPath) -> None:
         """Set the path of the finished run and that of the run so far."""
         self.wanted = wanted
-        self.path = check_writable(unused(wanted, self._taken) if self._numbered else wanted, self._force)
+        free = unused(wanted, lambda path: path in self._busy or run_is_there(path)) if self._numbered else wanted
+        self.path = check_writable(free, self._force)
         self.part = part_path(self.path)
         self.stale = check_writable(self.part, force=True).exists()
 
@@ -94,10 +95,6 @@ class Checkpoint:
         for path in (self.path, self.part):
             clear(path, everything=True)
         return self
-
-    def _taken(self, path: Path) -> bool:
-        """Return whether a run of this name is there, or was found to be under way."""
-        return path in self._busy or run_is_there(path)
 
     @staticmethod
     def load_libraries() -> None:
