@@ -89,13 +89,7 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
 
 
 def part_path(path: AnyPath) -> Path:
-    """Return the path of the part: the file of a run that is not finished.
-
-    Examples
-    --------
-    >>> str(part_path("run.nc"))
-    'run.part.nc'
-    """
+    """Return the path of the part, NAME.part.nc: the file of a run that is not finished."""
     whole = Path(path)
     return whole.with_name(f"{whole.stem}.part{whole.suffix}")
 
@@ -122,13 +116,7 @@ def unused(path: AnyPath, taken: Callable[[Path], bool] = os.path.lexists) -> Pa
 
 
 def whole_path(part: AnyPath) -> Path:
-    """Return the path of the finished run's file, given the path of the part.
-
-    Examples
-    --------
-    >>> str(whole_path("run.part.nc")), str(whole_path("run.nc"))
-    ('run.nc', 'run.nc')
-    """
+    """Return the path of the finished run's file, given the path of the part."""
     path = Path(part)
     return path.with_name(f"{path.stem.removesuffix('.part')}{path.suffix}")
 
@@ -195,13 +183,7 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
 
 
 def write_failure(error: OSError, path: Path) -> FileError:
-    """Return the error to raise for what the system reported when a file was to be written.
-
-    Examples
-    --------
-    >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
-    'The disk has no room for no/run.nc: delete something, or give another place with out.'
-    """
+    """Return the error to raise for what the system reported when a file was to be written."""
     if error.errno in FULL:
         kept = ", which stays as it was" if path.exists() else ""
         return DiskFullError(f"The disk has no room for {path}{kept}", "delete something, or ", *ELSEWHERE)

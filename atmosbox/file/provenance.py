@@ -31,13 +31,7 @@ def moment() -> str:
 
 
 def history_line(command: str | Sequence[str]) -> str:
-    """Return the line that a command adds to a file's history: the time in UTC and the command.
-
-    Examples
-    --------
-    >>> history_line(["atmosbox", "plot", "my run.nc"]).partition(": ")[2]
-    "atmosbox plot 'my run.nc'"
-    """
+    """Return the line that a command adds to a file's history: the time in UTC and the command."""
     return f"{moment()}: {command if isinstance(command, str) else shlex.join(command)}"
 
 

@@ -44,14 +44,9 @@ _PREDICTION = re.compile(rf"\w+:{_NUMBER}(?:,{_NUMBER}){{4}}", re.ASCII)
 
 
 class Turn(NamedTuple):
-    """A knob that was turned between two frames.
+    """A knob that was turned when a number of frames were complete.
 
-    Parameters
-    ----------
-    frame
-        Number of frames that were complete.
-    name, value
-        The knob, and its new value in its unit; None if it went back to how it was before its first turn.
+    The value is in the unit of the knob; None if it went back to how it was before its first turn.
     """
 
     frame: int
@@ -61,17 +56,7 @@ class Turn(NamedTuple):
 
 @dataclass(frozen=True)
 class Replay:
-    """What a link says of a run, beside its scene and its settings.
-
-    Parameters
-    ----------
-    link
-        The link, from ``#`` on.
-    frames
-        Number of frames of the run; 0 for as many as the scene has.
-    turns
-        The turns of knobs, in order.
-    """
+    """What a link says beside scene and settings: the number of frames, 0 for that of the scene, and the turns."""
 
     link: str
     frames: int

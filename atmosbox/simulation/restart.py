@@ -43,19 +43,7 @@ _DAMAGE = (RefusedError, ArithmeticError, AttributeError, EOFError, LookupError,
 
 
 class Restart(NamedTuple):
-    """The contents of a file from which a run continues.
-
-    Attributes
-    ----------
-    source
-        The file.
-    about
-        What determines the run: see `described`.
-    state
-        The state of its box and its instruments.
-    attributes
-        The global attributes of the file.
-    """
+    """The contents of a file from which a run continues: what determines the run, see `described`, and its state."""
 
     source: Path
     about: dict[str, Any]
