@@ -94,10 +94,11 @@ class Replay:
         if not told:
             return {}
         panels = map(without_headlines, from_json(others["atmosbox_panels"]))
+        turned = "Knobs were turned, see atmosbox_turns; averages begin after the last."
         return {
             "atmosbox_turns": json.dumps(told),
             "atmosbox_panels": to_json(panel for panel in panels if panel is not None),
-            "comment": f"Knobs were turned, see atmosbox_turns; averages begin after the last. {others['comment']}",
+            "comment": f"{turned} {others.get('comment', '')}".rstrip(),
         }
 
 
