@@ -58,7 +58,7 @@ print(json.dumps(said))
 def attributes(**extra):
     parameters = {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
     words = {"title": "Lifted air", "comment": "No ice, pas de glace à 25 °C.", "references": "doi:10.1000/1"}
-    return provenance.global_attributes(parameters, command=["atmosbox", "run", "lifting-dry"], **words) | extra
+    return provenance.global_attributes(parameters, command="atmosbox run lifting-dry", **words) | extra
 
 
 def headline(name, value, unit, **fields):

@@ -12,10 +12,7 @@ from atmosbox.text.table import table
 
 
 @command("atmosbox check lifting-dry.nc", "atmosbox check lifting-dry.nc --json")
-def check(
-    file: RunFile,
-    as_json: Json = False,
-) -> None:
+def check(file: RunFile, as_json: Json = False) -> None:
     """Verify the physics in a file.
 
     Is the energy budget closed, does the run agree with theory? The exit status is 3 if anything fails.

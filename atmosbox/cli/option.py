@@ -63,8 +63,7 @@ Accuracy = Annotated[
     ),
 ]
 FigureFormat = Annotated[
-    Literal["png", "svg", "pdf"] | None,
-    typer.Option(help="The format, where the name of the figure does not say it."),
+    Literal["png", "svg", "pdf"] | None, typer.Option(help="The format, where the name of the figure does not say it.")
 ]
 Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]
 Language = Annotated[

@@ -130,14 +130,13 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             read = [str(file) for file in given if file is not None]
             scene = str(kwargs.get("scene") or "")
             own = scenarios.place(error) or (scene if scene.endswith(".py") else None)
-            said = f"This is a bug in atmosbox ({_reason(error)})"
+            reason = _reason(error)
+            said = f"This is a bug in atmosbox ({reason})"
             if read:  # the file may have the names that atmosbox writes, but values that it never writes
                 named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
-                said = (
-                    f"{named} cannot be used ({_reason(error)}): it is not as atmosbox has written it, or this is a bug"
-                )
+                said = f"{named} cannot be used ({reason}): it is not as atmosbox has written it, or this is a bug"
             elif own is not None:
-                said = f"{shown(own, longest=4096)} cannot be run ({_reason(error)}): correct it and run it again"
+                said = f"{shown(own, longest=4096)} cannot be run ({reason}): correct it and run it again"
             tell(f"error: {said}{'' if kwargs.get('verbose') else '; --verbose shows where'}.")
             raise typer.Exit(FileError.exit_code if read or own is not None else 1) from error
 
