@@ -32,10 +32,11 @@ def prepare(
     Each command compiles what it needs, once; prepare does so in advance, for instance before a class.
     """
     from atmosbox import scenarios
+    from atmosbox.engine.core.kernel_cache import cache_folder
     from atmosbox.simulation import runner
-    from atmosbox.simulation.compilation import cache_home, compiled_here
 
-    if cache_home() is None:
+    code = cache_folder()
+    if code is None:
         raise EngineError(
             "Compiled kernels cannot be kept, since no folder can be written: set NUMBA_CACHE_DIR to one."
         )
@@ -49,7 +50,7 @@ def prepare(
             seconds[each] = spent
             show(len(seconds) / len(asked), "running")
     waited = time.perf_counter() - began
-    folder, size = str(cache_home()), compiled_here()
+    folder, size = str(code.parent), sum(file.stat().st_size for file in code.rglob("*") if file.is_file())
     if as_json:
         rows = [{"scene": name, "engine": engine, "seconds": s} for (name, engine), s in seconds.items()]
         say_json({"folder": folder, "bytes": size, "seconds": waited, "compiled": rows})

@@ -5,9 +5,8 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
-from atmosbox.engine.core.kernel_cache import cache_folder, compilations
+from atmosbox.engine.core.kernel_cache import compilations
 from atmosbox.simulation.preparation import Prepared, build
 
 _SENTENCE = "compiling the engine, once on this computer: about 15 s"
@@ -43,15 +42,3 @@ def compile_kernels(prepared: Prepared) -> float:
         step = getattr(setup.parcel, "time_step", 0.0)
         setup.parcel.advance(max(2.0 * step, 1e-4 * setup.frame))
     return time.process_time() - began if compiled else 0.0
-
-
-def cache_home() -> Path | None:
-    """Return the folder in which machine code is stored, None if there is none."""
-    folder = cache_folder()
-    return None if folder is None else folder.parent
-
-
-def compiled_here() -> int:
-    """Return the number of bytes of machine code that are stored for the present engine."""
-    folder = cache_folder()
-    return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
