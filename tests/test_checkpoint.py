@@ -1,18 +1,15 @@
 """The file of a run that goes on, is killed, or is finished."""
 
 import inspect
-import json
 import os
 import subprocess
 import sys
-import time
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from atmosbox.errors import FileError
-from atmosbox.file import output_lock
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.dataset import dataset
 from atmosbox.file.netcdf import read
@@ -28,7 +25,6 @@ def run_so_far(frames):
 CHILD = f"""
 import os, sys, time
 import numpy as np
-from atmosbox.file import output_lock
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.dataset import dataset
 from atmosbox.file.provenance import global_attributes
@@ -101,25 +97,3 @@ checkpoint.release()
     assert process.returncode == 0
     assert not list(tmp_path.iterdir())
     Checkpoint(path).begin().release()
-
-
-@pytest.mark.parametrize("locks", [True, False])
-def test_a_lock_without_the_systems_help_is_believed_as_long_as_its_owner_lives(tmp_path, monkeypatch, locks):
-    """A shared folder may have no locks, and the owner may be on another computer."""
-    lock = tmp_path / ".run.nc.lock"
-    if not locks:
-        monkeypatch.setattr(output_lock, "hold", lambda opened: None)
-    owner = {"pid": os.getppid(), "host": output_lock.host(), "since": "2026-11-22T00:00:00Z"}
-    lock.write_text(json.dumps(owner))
-    if not locks:
-        with pytest.raises(FileError, match=f"by process {os.getppid()} on"):
-            Checkpoint(tmp_path / "run.nc").begin()
-    lock.write_text(json.dumps(owner | {"pid": 2**22 + 1}))
-    Checkpoint(tmp_path / "run.nc").begin().release()
-    lock.write_text(json.dumps(owner | {"host": "elsewhere"}))
-    with pytest.raises(FileError, match="on elsewhere since"):
-        Checkpoint(tmp_path / "run.nc").begin()
-    long_ago = time.time() - 1.1 * output_lock.ABANDONED
-    os.utime(lock, (long_ago, long_ago))
-    Checkpoint(tmp_path / "run.nc").begin().release()
-    assert not list(tmp_path.iterdir())

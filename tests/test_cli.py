@@ -1,6 +1,5 @@
 """The command line: what each command prints and where, how it ends, and what it leaves on the disk."""
 
-import functools
 import io
 import itertools
 import json
@@ -18,7 +17,7 @@ import pytest
 import xarray as xr
 
 from atmosbox import scenarios
-from atmosbox.cli import check, terminal
+from atmosbox.cli import terminal
 from atmosbox.cli.option import Sought, _completed
 from atmosbox.cli.request import gather
 from atmosbox.errors import EngineError
@@ -237,12 +236,11 @@ def test_a_second_run_gets_a_number_and_loses_nothing(folder):
     assert {name: Path(name).read_bytes() for name in before} == before
 
 
-def test_two_runs_at_once_write_two_files(folder, monkeypatch):
-    """The second begins when the first, another process, has its name but no file yet."""
-    lock = folder / f".{SCENE}.nc.lock"
-    lock.write_text(json.dumps({"pid": 1, "host": output_lock.host(), "since": "today"}), encoding="utf-8")
-    monkeypatch.setattr(output_lock, "hold", lambda opened: None)
+def test_two_runs_at_once_write_two_files(folder):
+    """The second begins when the first has its name but no file yet."""
+    lock = output_lock.OutputLock(folder / f"{SCENE}.nc")
     assert atmosbox_in_process(*SHORT, "--quiet").stdout == f"{SCENE}-2.nc\n"
+    lock.release()
 
 
 def test_a_dry_run_shows_everything_and_writes_nothing(folder, no_computing):
@@ -564,28 +562,23 @@ def test_a_measurement_has_the_digits_that_its_error_deserves():
 # Checks
 
 
-def test_check_of_a_sound_file_ends_with_0_and_lists_every_check_and_json_is_one_object(finished, monkeypatch):
-    monkeypatch.setattr(check, "conventions", functools.cache(check.conventions))
+def test_check_of_a_sound_file_ends_with_0_and_lists_every_check_and_json_is_one_object(finished):
     result = atmosbox_in_process("check", str(finished))
     assert result.exit_code == 0, result.output
     lines = result.stdout.splitlines()
-    assert len(lines) == len(runner.verify(output.read(finished))) + 1
+    assert len(lines) == len(runner.verify(output.read(finished)))
     assert all(line.startswith("ok ") for line in lines)
-    assert "CF-1.11" in lines[-1]
     found = json.loads(atmosbox_in_process("check", str(finished), "--json").stdout)
     assert found["passed"] is True
-    assert found["conventions"]["passed"] is True
     assert all(set(one) == {"name", "passed", "sentence"} for one in found["checks"])
 
 
 def test_check_of_a_tampered_file_ends_with_3(folder, finished):
     dataset = output.read(finished)
     dataset["kinetic_energy"][-1] *= 1.1
-    dataset["kinetic_energy"].attrs["standard_name"] = "energy_of_my_own"
     output.write(dataset, "tampered.nc")
     result = atmosbox_in_process("check", "tampered.nc")
     assert result.exit_code == 3
     assert result.stderr == ""
     failed = [line.split()[1] for line in result.stdout.splitlines() if line.startswith("FAILED")]
     assert failed[0] == "balance"
-    assert failed[-1] == "conventions"

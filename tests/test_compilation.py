@@ -6,8 +6,7 @@ import uuid
 import pytest
 
 from atmosbox.engine.core.jit import COMPILED, kernel
-from atmosbox.engine.core.kernel_cache import compilations
-from atmosbox.simulation import compilation
+from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import prepare
 from atmosbox.simulation.runner import execute
 from tests.in_process import typed
@@ -43,5 +42,5 @@ def test_prepare_tells_where_the_machine_code_is():
     result = typed("prepare", SCENE, "--json")
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
-    assert told["folder"] == str(compilation.cache_home())
+    assert told["folder"] == str(cache_folder().parent)
     assert [row["scene"] for row in told["compiled"]] == [SCENE]

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Result, Theme, beside
+from atmosbox.cli.option import FigureFormat, Result, Theme, beside
 from atmosbox.cli.terminal import tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.report import comparison_lines
@@ -23,19 +22,13 @@ if TYPE_CHECKING:
 @command(
     "atmosbox compare cold.nc warm.nc",
     "atmosbox compare cold.nc mild.nc warm.nc --format pdf --theme slides",
-    "atmosbox compare dry.nc moist.nc --out both.html",
     out="The figure.  [default: beside FILE, named after all files]",
     quiet="Print only the path of the figure.",
 )
 def compare(
     files: Annotated[list[str], typer.Argument(metavar="FILE FILE...", help="Two to six runs.")],
     to: Result,
-    format: Annotated[
-        Literal["png", "svg", "pdf", "html"] | None,
-        typer.Option(
-            help="The format, where the name of the figure does not say it; html is a page of two boxes with one clock."
-        ),
-    ] = None,
+    format: FigureFormat = None,
     theme: Theme = "notes",
 ) -> None:
     """Compare runs in one figure, and show by how much their numbers differ.
@@ -45,26 +38,15 @@ def compare(
     if len(files) < 2:
         raise SettingError("FILE", None, "is given once", f"give a second run to compare {files[0]} with")
     from atmosbox.file.netcdf import read
-    from atmosbox.file.output_path import check_writable
 
-    kind = format or Path(to.out or "").suffix[1:].lower()
-    path = to.path(beside(files, kind or "png"))
+    path = to.path(beside(files, format or "png"))
     datasets = [read(file) for file in files]
 
     from atmosbox.plot.compare import compared, naming, save
 
     names = naming(datasets, [Path(file).stem for file in files])
     numbers = compared(datasets)
-    if kind == "html":
-        if len(files) > 2:
-            pair = shlex.join(["atmosbox", "view", *files[:2]])
-            raise SettingError("FILE", None, f"is given {len(files)} times, and a page shows two runs", f"type {pair}")
-        from atmosbox.page import save as save_page
-
-        check_writable(path, to.force)
-        path = save_page(datasets, path, force=to.force)
-    else:
-        path = save(datasets, names, path, format, theme=theme, force=to.force)
+    path = save(datasets, names, path, format, theme=theme, force=to.force)
     if names.same:
         tell(f"note: {' and '.join(files)} hold the same run")
     lines = [*comparison_lines(files, names, numbers, width()), "", f"file: {path}"]

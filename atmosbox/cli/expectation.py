@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.scene.target import TARGETS
@@ -32,20 +32,21 @@ def expectation_lines(
     lines = wrapped(f"{asked}{way.label}, at {cost(way.cost)}; its errors were measured in {way.members} runs", width)
     if target is not None and not expectation.met:
         lines += wrapped(f"Nothing that was measured is within {target.limits}: this comes nearest.", width)
-    found = {headline.name: headline for headline in headlines}
+    found = _found(expectation, headlines)
     rows = []
     for name, error in way.errors.items():
         bias = f"{_shown(error, error.bias, '+')} ± {_shown(error, error.bias_se)}"
         cells = [expectation.labels[name], _shown(error, error.total), bias, _shown(error, error.noise)]
-        rows.append([*cells, _found(error, found.get(name))])
+        rows.append([*cells, _shown(error, found[name], "+") if name in found else "-"])
     header = ["expected of a single run", "error", "bias", "noise", "found"]
     if not headlines:
         header, rows = header[:-1], [row[:-1] for row in rows]
     lines += table(header, rows, width)
     if expectation.differs:
-        where = ", ".join(_setting(way.settings, name) for name in expectation.differs)
+        known = way.settings
+        other = (said(name, known[name]) if name in known else f"the default of {name}" for name in expectation.differs)
         lines += wrapped(
-            f"These errors were measured at other settings, with {where}; here they may be different.", width
+            f"These errors were measured at other settings, with {', '.join(other)}; here they may be different.", width
         )
     return lines
 
@@ -57,22 +58,17 @@ def _meaning(target: Target) -> str:
     return f" ({'the most accurate that was measured' if target.best else target.limits})"
 
 
-def _setting(settings: Mapping[str, Any], name: str) -> str:
-    """Return a setting with its value in the measurement of the errors."""
-    return said(name, settings[name]) if name in settings else f"the default of {name}"
-
-
 def _shown(error: ExpectedError, size: float, sign: str = "") -> str:
     """Return an error with two digits and its unit."""
     number = size if error.unit == "K" else 100.0 * size
     return f"{float(f'{number:.2g}'):{sign}g} {'K' if error.unit == 'K' else '%'}"
 
 
-def _found(error: ExpectedError, headline: Headline | None) -> str:
-    """Return the difference of a run from theory, in the unit of the expected error; a dash if there is none."""
-    if headline is None or headline.misfit is None or not (size := error.size(headline.theory)):
-        return "-"
-    return _shown(error, headline.misfit / size, "+")
+def _found(expectation: Expectation, headlines: Sequence[Headline]) -> dict[str, float]:
+    """Return the differences of a run from theory, each in the unit of its expected error."""
+    judged = {each.name: each for each in headlines if each.misfit is not None}
+    sizes = {name: error.size(judged[name].theory) for name, error in expectation.way.errors.items() if name in judged}
+    return {name: (judged[name].misfit or 0.0) / size for name, size in sizes.items() if size}
 
 
 def expectation_json(expectation: Expectation | None, headlines: Sequence[Headline] = ()) -> dict[str, Any] | None:
@@ -80,8 +76,6 @@ def expectation_json(expectation: Expectation | None, headlines: Sequence[Headli
     if expectation is None:
         return None
     made = expectation.as_dict()
-    for headline in headlines:
-        if headline.name in made["errors"] and headline.misfit is not None:
-            size = expectation.way.errors[headline.name].size(headline.theory)
-            made["errors"][headline.name]["found"] = headline.misfit / size if size else None
+    for name, difference in _found(expectation, headlines).items():
+        made["errors"][name]["found"] = difference
     return made

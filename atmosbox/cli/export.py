@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import typer
 
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Output, RunFile, beside
 from atmosbox.cli.terminal import say
-
-Exported = Literal["extxyz", "csv"]
-"""The formats of other programs."""
 
 
 @command(
@@ -25,7 +22,7 @@ def export(
     file: RunFile,
     to: Output,
     format: Annotated[
-        Exported | None,
+        Literal["extxyz", "csv"] | None,
         typer.Option(help="extxyz holds the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."),
     ] = None,
 ) -> None:
@@ -53,7 +50,7 @@ def export(
             write_whole(place, content)
         say("\n".join(map(str, paths)))
         return
-    place, _ = named(to.path(default), format, get_args(Exported), force=to.force, what="box")
+    place, _ = named(to.path(default), format, ("extxyz", "csv"), force=to.force, what="box")
     from atmosbox.file.export import extended_xyz
 
     write_whole(place, extended_xyz(dataset))

@@ -15,15 +15,18 @@ from atmosbox.text.table import story, table, wrapped
 def info(scene: Annotated[str, SceneName], as_json: Json = False) -> None:
     """Show what a scene is about and what may be set."""
     from atmosbox.simulation import runner
-    from atmosbox.simulation.expected_time import expected_time
-    from atmosbox.text.report import card_json, parameter_lines
+    from atmosbox.simulation.expected_time import expected_time, in_words
+    from atmosbox.text.report import parameter_lines
 
     with prints_to_stderr():
         prepared = runner.prepare(scene, {})
         card = runner.card(prepared)
     expected = expected_time(prepared)
     if as_json:
-        say_json(card_json(card) | {"expected_seconds": None if expected is None else expected.seconds})
+        parts = ("name", "unit", "default", "low", "high", "choices", "kind", "help")
+        parameters = [{part: getattr(each, part) for part in parts} for each in card.parameters]
+        record = card._asdict() | {"facts": dict(card.facts), "parameters": parameters}
+        say_json(record | {"expected_seconds": expected})
         return
     columns = width()
     lines = [
@@ -31,7 +34,7 @@ def info(scene: Annotated[str, SceneName], as_json: Json = False) -> None:
         "",
         *story(card.story, columns),
         "",
-        *table(["", ""], [*card.facts, *([] if expected is None else [("a run takes", str(expected))])], columns),
+        *table(["", ""], [*card.facts, *([] if expected is None else [("a run takes", in_words(expected))])], columns),
         "",
         *parameter_lines(card.parameters, columns),
         "",

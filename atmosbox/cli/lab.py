@@ -67,7 +67,6 @@ def lab(
 
 
 _FRAMES = 12  # after which the still picture is drawn
-_SIZE = (4.0, 3.0)  # of a picture [inches]
 _PAGE = """<!doctype html>
 <html lang="en">
 <head>
@@ -158,7 +157,7 @@ def _still(prepared: Prepared) -> str:
     run, _ = recording.dataset("partial", judged=False)
     look = find("notes")
     with style(look):
-        figure = Figure(_SIZE, dpi=120)
+        figure = Figure((4.0, 3.0), dpi=120)  # inches
         picture = box_picture(figure.add_axes((0.04, 0.04, 0.92, 0.92)), run, molecules(run), look)
         picture.show(recording.frames - 1)
         content = io.BytesIO()

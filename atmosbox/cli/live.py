@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import secrets
-import signal
 import sys
 import threading
 import webbrowser
@@ -15,7 +14,7 @@ import typer
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Language, Sought, switch, text
 from atmosbox.cli.request import checked, gather, with_fewer_molecules
-from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
+from atmosbox.cli.terminal import prints_to_stderr, say, tell
 from atmosbox.errors import Option, SettingError
 
 
@@ -49,12 +48,11 @@ def live(
     from atmosbox.text.progress import progress
 
     token = None if no_token else secrets.token_urlsafe(16)
-    with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(prepared, show):
+    with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(show):
         server = Server(prepared, port=port, token=token, language=language)
 
     def opened() -> None:
         say(server.address)
-        sys.stdout.flush()
         used = server.server_address[1]
         if port is None and used != PORT:
             tell(f"note: port {PORT} is in use, so the page is at port {used}")
@@ -67,11 +65,9 @@ def live(
 
     with server:
         number = ended(server, opened)
-    raise typer.Exit(TERMINATED if number == signal.SIGTERM else INTERRUPTED)
+    raise typer.Exit(128 + number)
 
 
 def _display() -> bool:
     """Return whether there is a screen on which a browser can open; a browser inside the terminal is not wanted."""
-    if sys.platform in ("darwin", "win32"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -63,6 +63,9 @@ Accuracy = Annotated[
         "a run, such as 0.5K or 2%.",
     ),
 ]
+FigureFormat = Annotated[
+    Literal["png", "svg", "pdf"] | None, typer.Option(help="The format, where the name of the figure does not say it.")
+]
 Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]
 Language = Annotated[
     Literal["auto", "en", "de", "es"],
@@ -143,11 +146,6 @@ FIGURES = (".png", ".svg", ".pdf")
 _LONGEST = 100  # characters of a name that is made of the names of all files
 
 
-def is_path(scene: str) -> bool:
-    """Return whether a scene is given by the path of its file rather than by its name."""
-    return scene.endswith(".py") or "/" in scene or os.sep in scene
-
-
 def for_scene(scene: str, ending: str = ".nc") -> Path:
     """Return the default path, in this folder, of an output file of a scene.
 
@@ -156,7 +154,9 @@ def for_scene(scene: str, ending: str = ".nc") -> Path:
     >>> str(for_scene("lifting_dry")), str(for_scene("./my_scene.py", "-sweep.nc"))
     ('lifting-dry.nc', 'my_scene-sweep.nc')
     """
-    return Path((Path(scene).stem if is_path(scene) else scene.replace("_", "-")) + ending)
+    from atmosbox import scenarios
+
+    return Path((Path(scene).stem if scenarios.is_path(scene) else scene.replace("_", "-")) + ending)
 
 
 def beside(files: Sequence[str], kind: str) -> Path:

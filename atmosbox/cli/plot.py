@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
-
-import typer
+from typing import Annotated
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Output, RunFile, Theme, beside, switch
+from atmosbox.cli.option import FigureFormat, Output, RunFile, Theme, beside, switch
 from atmosbox.cli.terminal import say
 
 
@@ -22,10 +20,7 @@ from atmosbox.cli.terminal import say
 def plot(
     file: RunFile,
     to: Output,
-    format: Annotated[
-        Literal["png", "svg", "pdf"] | None,
-        typer.Option(help="The format, where the name of the figure does not say it."),
-    ] = None,
+    format: FigureFormat = None,
     theme: Theme = "notes",
     with_box: Annotated[
         bool,

@@ -11,22 +11,19 @@ import typer
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, switch
 from atmosbox.cli.terminal import say, say_json, width
-from atmosbox.errors import AtmosboxError, EngineError
+from atmosbox.errors import EngineError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
 Work = tuple[str, str]
 
 
-@command("atmosbox prepare", "atmosbox prepare lifting-dry", "atmosbox prepare --all")
+@command("atmosbox prepare", "atmosbox prepare lifting-dry")
 def prepare(
     scenes: Annotated[
         list[str] | None,
         typer.Argument(metavar="[SCENE]...", help="Which scenes; all that come with atmosbox if none is named."),
     ] = None,
-    every: Annotated[
-        bool, switch("--all", "Also for the engines stepped and dsmc, where a scene can use them.")
-    ] = False,
     as_json: Json = False,
     quiet: Annotated[bool, switch("--quiet", "Print only the folder of the machine code.")] = False,
 ) -> None:
@@ -35,25 +32,25 @@ def prepare(
     Each command compiles what it needs, once; prepare does so in advance, for instance before a class.
     """
     from atmosbox import scenarios
-    from atmosbox.simulation.compilation import cache_home, compiled_here
+    from atmosbox.engine.core.kernel_cache import cache_folder
+    from atmosbox.simulation import runner
 
-    if cache_home() is None:
+    code = cache_folder()
+    if code is None:
         raise EngineError(
             "Compiled kernels cannot be kept, since no folder can be written: set NUMBA_CACHE_DIR to one."
         )
-    names = list(scenes or scenarios.names())
-    for name in names:
-        scenarios.load(name)
-    asked = [(name, engine) for name in names for engine in _engines(name, every)]
+    own = {name: runner.prepare(name, {}).engine.name for name in scenes or scenarios.names()}
+    # a scene with few molecules runs on the exact engine
+    asked = [(name, engine) for name, usual in own.items() for engine in dict.fromkeys([usual, "exact"])]
     began = time.perf_counter()
     seconds: dict[Work, float] = {}
     with progress("prepare", quiet=quiet or as_json) as show:
-        for done, (each, spent) in enumerate(_compiled(asked), 1):
-            if spent is not None:
-                seconds[each] = spent
-            show(done / len(asked), "running")
+        for each, spent in _compiled(asked):
+            seconds[each] = spent
+            show(len(seconds) / len(asked), "running")
     waited = time.perf_counter() - began
-    folder, size = str(cache_home()), compiled_here()
+    folder, size = str(code.parent), sum(file.stat().st_size for file in code.rglob("*") if file.is_file())
     if as_json:
         rows = [{"scene": name, "engine": engine, "seconds": s} for (name, engine), s in seconds.items()]
         say_json({"folder": folder, "bytes": size, "seconds": waited, "compiled": rows})
@@ -65,16 +62,8 @@ def prepare(
         say(f"\nready after {waited:.0f} s; {size / 1e6:.0f} MB of machine code are kept in {folder}")
 
 
-def _engines(scene: str, every: bool) -> list[str]:
-    """Return the engines to compile: the scene's own, and the exact one, on which it runs with few molecules."""
-    from atmosbox.simulation.preparation import prepare as prepared
-
-    own = prepared(scene, {}).engine.name
-    return list(dict.fromkeys([own, "exact", *(("dsmc", "stepped") if every else ())]))
-
-
-def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
-    """Compile on all cores; yield each scene and engine with the time [s], None if the scene cannot use the engine."""
+def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float]]:
+    """Compile on all cores; yield each scene and engine with the time [s]."""
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
@@ -89,18 +78,13 @@ def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
             raise
 
 
-def _compile(scene: str, engine: str) -> float | None:
+def _compile(scene: str, engine: str) -> float:
     """Compile for a scene and an engine in this process."""
     import warnings
 
     from atmosbox.simulation.compilation import compile_kernels
     from atmosbox.simulation.preparation import prepare as prepared
 
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return compile_kernels(prepared(scene, {}, engine=engine))
-    except AtmosboxError:
-        if engine == prepared(scene, {}).engine.name:
-            raise
-        return None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return compile_kernels(prepared(scene, {}, engine=engine))

@@ -13,9 +13,9 @@ import tomllib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from atmosbox.cli.option import Sought, is_path
+from atmosbox.cli.option import Sought
 from atmosbox.cli.terminal import prints_to_stderr, tell
-from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError, shown
+from atmosbox.errors import ConfigError, FileError, SettingError, UnknownSceneError, shown
 from atmosbox.scene.settings import Value
 from atmosbox.scene.spelling import assignments, field_name, nearest
 
@@ -140,17 +140,19 @@ def gather(sought: Sought, save_molecules: bool | None = None) -> Asked:
     >>> gather(Sought("lifting-dry", ["temperature=25degC"], seed="7")).settings
     {'temperature': '25degC', 'seed': '7'}
     """
+    from atmosbox.simulation.preparation import agreed
+
     scene, accuracy, source = sought.scene or "", sought.accuracy, sought.source
     settings: dict[str, Any] = {}
     of_file: str | None = None
     if source is not None:
         run = _earlier(source)
-        scene = _agreed(scene, run.scene, "--from", source, FileError)
+        scene = agreed(scene, run.scene, source, "from")
         settings, of_file = run.settings, run.engine
         save_molecules = run.save_molecules if save_molecules is None else save_molecules
     if sought.config is not None:
         asked = load_config(sought.config)
-        scene = _agreed(scene, asked.scene, "--config", sought.config, ConfigError)
+        scene = agreed(scene, asked.scene, sought.config, "config", ConfigError)
         settings, of_file = _over(settings, asked.settings), asked.engine or of_file
         accuracy = accuracy or asked.accuracy
     settings = _over(settings, assignments(sought.values or ()))
@@ -209,23 +211,6 @@ def _earlier(path: str) -> Asked:
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
     return Asked(scene, settings, str(made.get("engine", "exact")), kept if isinstance(kept, bool) else None)
-
-
-def _agreed(scene: str, named: str, option: str, path: str, error: type[AtmosboxError]) -> str:
-    """Return the scene, which the command line and a file must not name differently.
-
-    A file never makes atmosbox run code: the path of a user's own scene must be typed.
-    """
-    if not named:
-        return scene
-    if not scene:
-        if is_path(named):
-            again = f"atmosbox run {shlex.quote(named)} {option} {shlex.quote(path)}"
-            raise error(f"{path} is for the scene in the file {named}, which must be typed: {again}.")
-        return named
-    if not (is_path(scene) or is_path(named)) and scene.replace("_", "-") != named.replace("_", "-"):
-        raise error(f"{path} is for the scene {named}, not for {scene}: leave one of them out.")
-    return scene
 
 
 def _over(settings: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:

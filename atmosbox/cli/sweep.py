@@ -12,7 +12,7 @@ from atmosbox.cli import option
 from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import Result, for_scene, netcdf_name, text
 from atmosbox.cli.terminal import prints_to_stderr, tell, width
-from atmosbox.errors import EngineError, PhysicsError
+from atmosbox.errors import EngineError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
 
@@ -92,14 +92,9 @@ def sweep(
 def _describe(grid: Plan, path: Path, to: Result) -> None:
     """Print which runs the sweep would make."""
     points = range(1, len(grid.prepared) + 1)
-    record: dict[str, Any] = {
-        "dry_run": True,
-        "scene": grid.scene,
-        "title": grid.title,
-        "file": str(path),
-        "runs": grid.runs,
-    }
-    record |= {"members": grid.members, "settings": dict(grid.defaults), "points": list(map(grid.values, points))}
+    record: dict[str, Any] = {"dry_run": True, "scene": grid.scene, "title": grid.title, "file": str(path)}
+    record |= {"runs": grid.runs, "members": grid.members}
+    record |= {"settings": dict(grid.defaults), "points": list(map(grid.values, points))}
     lines = [f"{grid.scene}: {grid.title}", "", *table(list(grid.vary), [*map(grid.typed, points)], width()), ""]
     lines += [f"runs: {grid.runs}, {grid.members} at each of {len(points)} points"]
     to.say(path, record, [*lines, f"file: {path} (not written: this is a dry run)"])
@@ -107,7 +102,7 @@ def _describe(grid: Plan, path: Path, to: Result) -> None:
 
 def _say(grid: Plan, found: xr.Dataset, path: Path, to: Result) -> None:
     """Print the results, and raise an error if a run has failed or its energy budget is not closed."""
-    from atmosbox.simulation.verification import LEDGER_LIMIT
+    from atmosbox.simulation.verification import check_ledger
     from atmosbox.text.report import ledger_line, next_command
 
     failed: list[dict[str, Any]] = [
@@ -119,11 +114,7 @@ def _say(grid: Plan, found: xr.Dataset, path: Path, to: Result) -> None:
     record = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "failed": failed, "ledger": ledger}
     last = [ledger_line(ledger), f"file: {path}", f"next: {next_command('plot', path)}"]
     to.say(path, record | {"points": records(grid, found)}, [*lines(grid, found, width()), "", *last])
-    if not ledger <= LEDGER_LIMIT:
-        raise PhysicsError(
-            f"The energy budget of a run of this sweep is off by {ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
-            f"see member_ledger in {path}."
-        )
+    check_ledger(ledger, "a run of this sweep", f"see member_ledger in {path}")
     if failed:
         named = []
         for each in failed[:_MOST_NAMED]:

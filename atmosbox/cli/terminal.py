@@ -21,8 +21,6 @@ from atmosbox.text.stream import say, say_json, tell
 __all__ = ["guarded", "prints_to_stderr", "say", "say_json", "stoppable", "tell", "width"]
 
 INTERRUPTED = 130  # exit status, as shells report it, of a program that Ctrl-C ended
-TERMINATED = 143  # exit status of a program that was asked to end (SIGTERM)
-HUNG_UP = 129  # exit status of a program whose terminal was closed (SIGHUP)
 ENDLESS = 1_000_000  # columns if the output is not a terminal
 LONGEST_SENTENCE = 20_000  # characters; paths may have 4096
 
@@ -49,7 +47,7 @@ def _reason(error: Exception) -> str:
 
 
 class Stopped(KeyboardInterrupt):
-    """Another program asked this one to end, or its terminal was closed."""
+    """Another program asked this one to end, or its terminal was closed; the exit status is that of a shell."""
 
     def __init__(self, exit_code: int) -> None:
         super().__init__()
@@ -64,18 +62,17 @@ def stoppable() -> Iterator[None]:
     raised in a function which a C library calls, as LLVM does while it compiles: such a signal is sent again. If it
     gets lost in another way, the block raises `Stopped` at its end.
     """
-    names = {"SIGINT": INTERRUPTED, "SIGTERM": TERMINATED, "SIGHUP": HUNG_UP}
-    status = {getattr(signal, name): code for name, code in names.items() if hasattr(signal, name)}
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     usual = (signal.SIG_DFL, signal.default_int_handler)
     main = threading.current_thread() is threading.main_thread()
-    before = {number: handler for number in status if main and (handler := signal.getsignal(number)) in usual}
+    before = {number: handler for number in numbers if main and (handler := signal.getsignal(number)) in usual}
     came: list[int] = []
     sent: list[threading.Timer] = []
     hook = sys.unraisablehook
 
     def stop(number: int, frame: object) -> Never:
         came.append(number)
-        raise Stopped(status[signal.Signals(number)])
+        raise Stopped(128 + number)
 
     def dropped(what: sys.UnraisableHookArgs) -> None:
         if isinstance(what.exc_value, Stopped):
@@ -90,7 +87,7 @@ def stoppable() -> Iterator[None]:
     try:
         yield
         if came:
-            raise Stopped(status[signal.Signals(came[-1])])
+            raise Stopped(128 + came[-1])
     finally:
         for timer in sent:
             timer.cancel()
@@ -133,14 +130,13 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             read = [str(file) for file in given if file is not None]
             scene = str(kwargs.get("scene") or "")
             own = scenarios.place(error) or (scene if scene.endswith(".py") else None)
-            said = f"This is a bug in atmosbox ({_reason(error)})"
+            reason = _reason(error)
+            said = f"This is a bug in atmosbox ({reason})"
             if read:  # the file may have the names that atmosbox writes, but values that it never writes
                 named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
-                said = (
-                    f"{named} cannot be used ({_reason(error)}): it is not as atmosbox has written it, or this is a bug"
-                )
+                said = f"{named} cannot be used ({reason}): it is not as atmosbox has written it, or this is a bug"
             elif own is not None:
-                said = f"{shown(own, longest=4096)} cannot be run ({_reason(error)}): correct it and run it again"
+                said = f"{shown(own, longest=4096)} cannot be run ({reason}): correct it and run it again"
             tell(f"error: {said}{'' if kwargs.get('verbose') else '; --verbose shows where'}.")
             raise typer.Exit(FileError.exit_code if read or own is not None else 1) from error
 

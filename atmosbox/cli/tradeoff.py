@@ -1,9 +1,8 @@
-"""The command ``tradeoff``: measure speed against accuracy, and print, save and draw the results."""
+"""The command ``tradeoff``: measure speed against accuracy, and print and save the results."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -24,7 +23,7 @@ _COLUMNS = ("wall_seconds", "engine_seconds", "cost", "members", "energy_drift",
 @command(
     "atmosbox tradeoff lifting-dry",
     "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
-    out="The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]",
+    out="The netCDF file.  [default: SCENE-tradeoff.nc]",
     quiet="Print only the path of the file.",
 )
 def tradeoff(
@@ -41,41 +40,33 @@ def tradeoff(
     first. Ctrl-C ends it early and keeps what was measured. If it was killed, type the same command again: it goes
     on where it was.
     """
-    from atmosbox.file.export import as_csv
-    from atmosbox.file.output_path import check_writable, write_whole
-    from atmosbox.plot import save
+    from atmosbox.file.output_path import check_writable
     from atmosbox.plot.tradeoff_figure import recommended
     from atmosbox.scene.settings import Parameter
     from atmosbox.scene.spelling import assignments
+    from atmosbox.text.report import next_command
     from atmosbox.trade.tradeoff import measure
 
     seconds = float(Parameter("budget", "s", 40.0, 1.0, 1e6, given_as=Option).parse(budget))
     first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int", given_as=Option).parse(seed or "1"))
 
-    def written(path: Path) -> list[Path]:
-        return [path, path.with_suffix(".csv"), path.with_suffix(".png")]
-
-    path = check_writable(netcdf_name(to.path(for_scene(scene, "-tradeoff.nc"), written)), to.force)
-    files = [check_writable(each, to.force) for each in written(path)]
+    path = check_writable(netcdf_name(to.path(for_scene(scene, "-tradeoff.nc"))), to.force)
     with progress(scene, quiet=to.quiet) as show:
         how: dict[str, Any] = {"budget": seconds, "seed": first, "out": path, "force": to.force, "command": typed(ctx)}
         note = None if to.quiet else lambda remark: tell(f"note: {remark}")
         found = measure(scene, settings=assignments(values or ()), progress=show, note=note, **how)
     records = rows(found)
-    cells = [["" if cell != cell else cell for cell in record.values()] for record in records]  # NaN is left out
-    write_whole(files[1], as_csv([list(records[0]), *cells]))
-    save(found, files[2], force=to.force)
     best = recommended(found)
     way = None if best is None else str(found.rung.values[best[0]])
-    about = {"scene": scene, "files": list(map(str, files)), "recommended": way, "rungs": records}
-    to.say(path, about, [*lines(found, width()), "", *(f"file: {file}" for file in files)])
+    about = {"scene": scene, "file": str(path), "recommended": way, "rungs": records}
+    to.say(path, about, [*lines(found, width()), "", f"file: {path}", f"next: {next_command('plot', path)}"])
     if found.attrs["atmosbox_status"] == "interrupted":
         tell("stopped: what was measured is kept")
         raise typer.Exit(INTERRUPTED)
 
 
 def rows(found: xr.Dataset) -> list[dict[str, object]]:
-    """Return the measurement as records for JSON and CSV, one for each engine with its settings."""
+    """Return the measurement as records for JSON, one for each engine with its settings."""
     made = []
     for k, label in enumerate(found.rung.values):
         record: dict[str, object] = {"run": str(label), "engine": str(found.engine.values[k])}

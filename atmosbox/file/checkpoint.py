@@ -73,34 +73,28 @@ class Checkpoint:
     def _name(self, wanted: AnyPath) -> None:
         """Set the path of the finished run and that of the run so far."""
         self.wanted = wanted
-        self.path = check_writable(unused(wanted, self._taken) if self._numbered else wanted, self._force)
+        free = unused(wanted, lambda path: path in self._busy or run_is_there(path)) if self._numbered else wanted
+        self.path = check_writable(free, self._force)
         self.part = part_path(self.path)
         self.stale = check_writable(self.part, force=True).exists()
 
     def begin(self) -> Checkpoint:
-        """Lock the file for this run alone, and remove the temporary files that a killed run has left."""
-        if self._lock is None:
-            self._lock = self._locked()
-            for path in (self.path, self.part):
-                clear(path, everything=True)
+        """Lock the file for this run alone, and remove the temporary files that a killed run has left.
+
+        If the name is numbered and another run has taken it meanwhile, lock the file of the next name.
+        """
+        if self._lock is not None:
+            return self
+        while self._lock is None:
+            with contextlib.suppress(*((BusyError,) if self._numbered else ())):
+                self._lock = OutputLock(self.path)
+            if self._numbered and (self._lock is None or run_is_there(self.path)):
+                self.release()
+                self._busy.add(self.path)
+                self._name(self.wanted)
+        for path in (self.path, self.part):
+            clear(path, everything=True)
         return self
-
-    def _taken(self, path: Path) -> bool:
-        """Return whether a run of this name is there, or was found to be under way."""
-        return path in self._busy or run_is_there(path)
-
-    def _locked(self) -> OutputLock:
-        """Lock the file; if the name is numbered and another run has taken it meanwhile, lock that of the next name."""
-        if not self._numbered:
-            return OutputLock(self.path)
-        while True:
-            with contextlib.suppress(BusyError):
-                lock = OutputLock(self.path)
-                if not self._taken(self.path):  # nothing can take a name whose lock we have
-                    return lock
-                lock.release()
-            self._busy.add(self.path)
-            self._name(self.wanted)
 
     @staticmethod
     def load_libraries() -> None:
@@ -119,8 +113,6 @@ class Checkpoint:
     def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
         """Write the run so far if it is time to, and return whether it was written."""
         now = self._clock()
-        if self._lock is not None:
-            self._lock.keep()
         expected = self._spent + 1.5 * self._last  # the file has grown since
         if now - self._written < self._every or expected > SHARE * (now - self._begun):
             return False

@@ -144,13 +144,6 @@ def extended(
     """Return a dataset with more variables, such as those that theory predicts, and with headlines.
 
     Arguments and errors are those of `dataset`; a variable of the same name is replaced.
-
-    Examples
-    --------
-    >>> measured = dataset({"air_temperature": [300.0, 301.0]}, {"elapsed_time": [0.5, 1.0]}, {})
-    >>> run = extended(measured, {"air_temperature_theory": [300.0, 300.0]})
-    >>> run.air_temperature.attrs["ancillary_variables"], len(measured.data_vars)
-    ('air_temperature_theory', 1)
     """
     declared = {name: variable(name, own) for name in frames}
     held = {name: declared[name].holding(_array(declared[name], values)) for name, values in frames.items()}

@@ -13,16 +13,11 @@ from atmosbox.file.provenance import parameters
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOLECULES = {each: f"molecule_{each}" for each in ("position", "speed", "mass", "diameter")}
-_MOLECULES |= {"side": "box_side", "walls": "wall_law"}
-_DISCS = {"position": "disc_position", "speed": "disc_velocity", "mass": "disc_mass", "diameter": "disc_diameter"}
-_DISCS["side"] = "box_length"
-_OPTIONAL = {
-    "liquid": "liquid_molecule_count",
-    "rained": "rained_molecule_count",
-    "wall_temperature": "wall_temperature",
-}
-_OPTIONAL["neighbours"] = "molecule_neighbour_count"
+_EACH = ("position", "speed", "mass", "diameter")
+_MOLECULES = {each: f"molecule_{each}" for each in _EACH} | {"side": "box_side", "walls": "wall_law"}
+_DISCS = {each: f"disc_{each}" for each in _EACH} | {"speed": "disc_velocity", "side": "box_length"}
+_OPTIONAL = {each: f"{each}_molecule_count" for each in ("liquid", "rained")}
+_OPTIONAL |= {"wall_temperature": "wall_temperature", "neighbours": "molecule_neighbour_count"}
 """The variables of the fields of `Molecules`, for molecules and for discs."""
 
 Floats = NDArray[np.floating]
@@ -145,9 +140,7 @@ def _falls(dataset: xr.Dataset) -> bool:
     if "potential_energy" not in dataset:
         return False
     potential = dataset["potential_energy"].values
-    if "attraction_energy" not in dataset:
-        return bool(potential.any())
-    wells = dataset["attraction_energy"].values
+    wells = dataset["attraction_energy"].values if "attraction_energy" in dataset else 0.0
     return bool((np.abs(potential - wells) > 1e-9 * np.abs(potential).max(initial=0.0)).any())
 
 

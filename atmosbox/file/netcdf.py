@@ -135,6 +135,4 @@ def read_state(path: AnyPath) -> NDArray[np.uint8] | None:
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
-        if STATE not in file.variables:
-            return None
-        return np.array(file.variables[STATE][:], np.uint8)
+        return np.array(file.variables[STATE][:], np.uint8) if STATE in file.variables else None

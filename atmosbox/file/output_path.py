@@ -7,16 +7,16 @@ import errno
 import glob
 import itertools
 import os
+import secrets
 import shlex
 import shutil
 import time
-import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeAlias
 
 from atmosbox.errors import DiskFullError, FileError, Option, SettingError, shown
-from atmosbox.file.output_lock import ANOTHER_NAME, ELSEWHERE, alive, host
+from atmosbox.file.output_lock import ANOTHER_NAME, ELSEWHERE
 from atmosbox.file.provenance import moment
 
 AnyPath: TypeAlias = str | os.PathLike[str]
@@ -24,8 +24,7 @@ AnyPath: TypeAlias = str | os.PathLike[str]
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the temporary name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
-_NUMBERS = itertools.count()
-LEFT_OVER = 3600.0  # seconds after which a temporary file of another computer counts as left by a killed program
+LEFT_OVER = 3600.0  # seconds after which a temporary file counts as left by a killed program
 
 
 def named(
@@ -90,13 +89,7 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
 
 
 def part_path(path: AnyPath) -> Path:
-    """Return the path of the part: the file of a run that is not finished.
-
-    Examples
-    --------
-    >>> str(part_path("run.nc"))
-    'run.part.nc'
-    """
+    """Return the path of the part, NAME.part.nc: the file of a run that is not finished."""
     whole = Path(path)
     return whole.with_name(f"{whole.stem}.part{whole.suffix}")
 
@@ -123,13 +116,7 @@ def unused(path: AnyPath, taken: Callable[[Path], bool] = os.path.lexists) -> Pa
 
 
 def whole_path(part: AnyPath) -> Path:
-    """Return the path of the finished run's file, given the path of the part.
-
-    Examples
-    --------
-    >>> str(whole_path("run.part.nc")), str(whole_path("run.nc"))
-    ('run.nc', 'run.nc')
-    """
+    """Return the path of the finished run's file, given the path of the part."""
     path = Path(part)
     return path.with_name(f"{path.stem.removesuffix('.part')}{path.suffix}")
 
@@ -137,28 +124,21 @@ def whole_path(part: AnyPath) -> Path:
 def clear(path: Path, *, everything: bool = False) -> None:
     """Remove the temporary files of a file that were left by programs which were killed.
 
-    With `everything`, remove all of them, because no other program can be writing the file.
+    Such a file is an hour old. With `everything`, remove all of them, because no other program can be writing the file.
 
     Examples
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     Path(folder, ".a.txt.1a2b3c4d.7.0.tmp").touch()
+    ...     Path(folder, ".a.txt.1a2b3c4d.tmp").touch()
     ...     clear(Path(folder, "a.txt"), everything=True)
     ...     list(Path(folder).iterdir())
     []
     """
     with contextlib.suppress(OSError):
         for old in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
-            *_, where, pid, _number, _suffix = old.name.split(".")
-            here = where == _here() and pid.isdecimal()
-            if everything or (not alive(int(pid)) if here else time.time() - old.stat().st_mtime > LEFT_OVER):
+            if everything or time.time() - old.stat().st_mtime > LEFT_OVER:
                 old.unlink(missing_ok=True)
-
-
-def _here() -> str:
-    """Return eight hexadecimal digits that identify this computer."""
-    return f"{zlib.crc32(host().encode()):08x}"
 
 
 @contextlib.contextmanager
@@ -166,7 +146,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside a file; the temporary file replaces the file when the block ends without error.
 
     If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
-    is killed leaves the temporary file, and the next program that writes the same file removes it.
+    is killed leaves the temporary file, which the next program that writes the same file removes: see `clear`.
 
     Examples
     --------
@@ -178,8 +158,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     ['a.txt']
     """
     clear(path)
-    # its name identifies the computer and the process that writes
-    temporary = path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
     try:
         yield temporary
         # without this, the file can have its final name and yet be empty after a power failure
@@ -204,13 +183,7 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
 
 
 def write_failure(error: OSError, path: Path) -> FileError:
-    """Return the error to raise for what the system reported when a file was to be written.
-
-    Examples
-    --------
-    >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
-    'The disk has no room for no/run.nc: delete something, or give another place with out.'
-    """
+    """Return the error to raise for what the system reported when a file was to be written."""
     if error.errno in FULL:
         kept = ", which stays as it was" if path.exists() else ""
         return DiskFullError(f"The disk has no room for {path}{kept}", "delete something, or ", *ELSEWHERE)

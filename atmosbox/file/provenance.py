@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
@@ -30,22 +29,16 @@ def moment() -> str:
     return now.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
-def history_line(command: str | Sequence[str]) -> str:
-    """Return the line that a command adds to a file's history: the time in UTC and the command.
-
-    Examples
-    --------
-    >>> history_line(["atmosbox", "plot", "my run.nc"]).partition(": ")[2]
-    "atmosbox plot 'my run.nc'"
-    """
-    return f"{moment()}: {command if isinstance(command, str) else shlex.join(command)}"
+def history_line(command: str) -> str:
+    """Return the line that a command adds to a file's history: the time in UTC and the command."""
+    return f"{moment()}: {command}"
 
 
 def global_attributes(
     parameters: Mapping[str, Any],
     *,
     title: str,
-    command: str | Sequence[str],
+    command: str,
     comment: str = "",
     references: str = "",
     panels: str = "[]",
@@ -60,7 +53,7 @@ def global_attributes(
     title
         What the file contains, in one line.
     command
-        The command that made the file, as typed, or its words.
+        The command that made the file, as typed.
     comment, references
         The assumptions of the scene, and the literature that it uses.
     panels

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import mmap
@@ -34,13 +35,11 @@ _JSON: dict[str, type | tuple[type, ...]] = {
 
 def free_memory() -> float:
     """Return the number of bytes of free memory; infinite if the system does not say."""
-    try:
+    with contextlib.suppress(OSError, ValueError):
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
                 return 1024.0 * int(line.split()[1])
-        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (OSError, ValueError, AttributeError):
-        return math.inf
+    return math.inf
 
 
 def check_valid(file: netCDF4.Dataset, source: Path) -> None:
@@ -57,15 +56,15 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     if declared > max(SMALL, 0.5 * free_memory()):
         problem = f"{source} holds {much}, for which {free_memory() / 1e9:.3g} GB of free memory are too few"
         raise FileError(f"{problem}: run the scene with fewer molecules or frames.")
-    for name, kind in _JSON.items():
-        if name in file.ncattrs() and not isinstance(_parsed(file.getncattr(name)), kind):
+    held = {name: _parsed(file.getncattr(name)) for name in _JSON if name in file.ncattrs()}
+    for name, content in held.items():
+        if not isinstance(content, _JSON[name]):
             raise FileError(f"The attribute {name} of {source} is not as atmosbox writes it: run the scene again.")
-    named = _parsed(file.getncattr("atmosbox_headlines")) if "atmosbox_headlines" in file.ncattrs() else []
-    for name in named:
+    for name in held.get("atmosbox_headlines", ()):
         if not isinstance(name, str) or name not in file.variables:
             raise FileError(f"{source} lacks {shown(name)}, which its headlines name: run the scene again.")
-    for name, held in file.variables.items():
-        _check_variable(name, held, source)
+    for name, variable in file.variables.items():
+        _check_variable(name, variable, source)
 
 
 def _bytes(held: netCDF4.Variable[Any]) -> float:
@@ -83,22 +82,16 @@ def _parsed(text: object) -> Any:
 
 def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> None:
     """Refuse a declared variable that does not agree with its declaration."""
-    numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
     declared = known(name)
     if declared is None:
         return
-    if numeric == (declared.dtype == "U"):
-        found, wanted = ("numbers", "text") if numeric else ("text", "numbers")
-        raise FileError(f"{source} holds {found} in {name}, where {wanted} belong: run the scene again.")
+    numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
     dims = held.dimensions[: None if numeric else -1]  # the last one of a text is its length
-    # a headline is one number, and the axis of a sweep; both may have the name of a variable, as gravity has
-    if dims not in (declared.dims, (), (name,)):
-        found = " x ".join(dims)
-        raise FileError(f"{source} holds {name} as {found}, and not as atmosbox writes it: run the scene again.")
     sizes = held.group().dimensions
-    empty = [dim for dim in held.dimensions if dim not in ("elapsed_time", "drop") and not sizes[dim].size]
-    if empty and numeric:
-        raise FileError(f"{source} holds {name} of no {empty[0]}: run the scene again.")
+    empty = numeric and any(not sizes[dim].size for dim in dims if dim not in ("elapsed_time", "drop"))
+    # a headline is one number, and the axis of a sweep; both may have the name of a variable, as gravity has
+    if empty or numeric == (declared.dtype == "U") or dims not in (declared.dims, (), (name,)):
+        raise FileError(f"{source} holds {name}, and not as atmosbox writes it: run the scene again.")
     for needed in {"units", "flag_meanings"} & declared.attributes().keys():
         if not isinstance(getattr(held, needed, None), str):
             raise FileError(f"{source} does not say the {needed} of {name}: run the scene again.")

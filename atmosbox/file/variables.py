@@ -161,7 +161,7 @@ def derived(parent: Variable, suffix: str) -> Variable:
 _TABLE = """
 # Coordinates
 elapsed_time | s | time: ledger | time since the start of the run
-height | m | height: ledger axis=Z positive=up | height of the middle of the layer
+height | m | height: ledger axis=Z positive=up standard | height of the middle of the layer
 speed | m s-1 | speed: ledger | speed of a molecule, middle of the bin
 energy | J | energy: ledger | energy of a molecule of water above that of one at rest in the liquid, middle of the bin
 distance | m | distance: ledger | distance from the left wall, middle of the bin
@@ -171,8 +171,8 @@ wall | | wall: dtype=U | wall of the box
 axis | | axis: dtype=U | direction in space, z upwards
 molecule | 1 | molecule: dtype=i8 | number of the molecule
 # Every run, frame by frame
-air_temperature | K | time: mean | temperature of the air in the box
-air_pressure | Pa | time: mean | pressure of the air on the walls
+air_temperature | K | time: mean standard | temperature of the air in the box
+air_pressure | Pa | time: mean standard | pressure of the air on the walls
 mean_molecular_speed | m s-1 | time: mean | mean speed of the molecules
 kinetic_energy | J | time: point ledger | kinetic energy of the molecules
 rotational_energy | J | time: point ledger | rotational energy of the molecules
@@ -206,13 +206,15 @@ liquid_well_energy | J | time: mean | energy of attraction of a molecule of the 
 vapor_well_energy | J | time: mean | energy of attraction of a molecule of the vapour
 # A parcel that is lifted
 parcel_temperature | K | time: point | temperature of the parcel
-parcel_potential_temperature | K | time: point | potential temperature of the parcel, reduced to 1000 hPa
+parcel_potential_temperature | K | time: point standard=air_potential_temperature | potential \
+temperature of the parcel, reduced to 1000 hPa
 parcel_pressure | Pa | time: ledger coordinate positive=down | pressure of the parcel
 parcel_height | m | time: ledger coordinate positive=up | height of the parcel above the ground
 environment_temperature | K | time | temperature of the environment
-environment_dew_point_temperature | K | time | dewpoint of the environment
+environment_dew_point_temperature | K | time: standard=dew_point_temperature | dewpoint of the environment
 environment_virtual_temperature | K | time | virtual temperature of the environment
-parcel_virtual_temperature | K | time | virtual temperature of the parcel, without the weight of its droplets
+parcel_virtual_temperature | K | time: standard=virtual_temperature | virtual temperature of the parcel, without \
+the weight of its droplets
 parcel_density_temperature | K | time | temperature of dry air as dense as the parcel with its droplets
 parcel_buoyancy | m s-2 | time | buoyancy of the parcel, with the weight of its droplets
 environment_pressure | Pa | time | pressure of the environment
@@ -222,11 +224,11 @@ parcel_volume | m3 | time: point ledger | volume of the parcel
 piston_height | m | time: point ledger | distance of the piston from the floor of the box
 piston_velocity | m s-1 | time: point ledger | velocity of the piston, positive outwards
 # Water
-water_vapor_partial_pressure | Pa | time: mean | vapour pressure
+water_vapor_partial_pressure | Pa | time: mean standard=water_vapor_partial_pressure_in_air | vapour pressure
 saturation_vapor_pressure | Pa | time: mean | saturation vapour pressure at the temperature of the air, over water
-relative_humidity | 1 | time: mean | relative humidity
-humidity_mixing_ratio | kg kg-1 | time: mean | mass of vapour per mass of dry air
-cloud_liquid_water_mixing_ratio | kg kg-1 | time: mean | mass of liquid water per mass of dry air
+relative_humidity | 1 | time: mean standard | relative humidity
+humidity_mixing_ratio | kg kg-1 | time: mean standard | mass of vapour per mass of dry air
+cloud_liquid_water_mixing_ratio | kg kg-1 | time: mean standard | mass of liquid water per mass of dry air
 largest_haze_mixing_ratio | kg kg-1 | time: mean | mass of liquid water per mass of dry air, above which it is a cloud
 rain_mixing_ratio | kg kg-1 | time: mean | mass of water that has rained out so far per mass of dry air
 liquid_temperature | K | time: mean | temperature of the liquid water
@@ -253,7 +255,7 @@ leaving_energy_probability_density | J-1 | energy: mean | share of the molecules
 staying_energy_probability_density | J-1 | energy: mean | share of the molecules in the liquid per unit of energy
 # A column of air, layer by layer
 number_density | m-3 | height: mean | number of molecules in a cubic metre of the layer
-air_density | kg m-3 | height: mean | density of the layer
+air_density | kg m-3 | height: mean standard | density of the layer
 layer_temperature | K | height: mean | temperature of the layer
 layer_pressure | Pa | height: mean | pressure of the layer
 number_density_barometric | m-3 | height: mean | number density by the barometric law
@@ -265,7 +267,7 @@ cell_number_density | m-3 | time distance height: mean | number of molecules in 
 cell_pressure | Pa | time distance height: mean | pressure of the air in a cell, by density, temperature and \
 equation of state
 horizontal_wind | m s-1 | time distance height: mean | wind away from the left wall
-upward_wind | m s-1 | time distance height: mean | upward wind
+upward_wind | m s-1 | time distance height: mean standard=upward_air_velocity | upward wind
 wind_speed | m s-1 | time: mean | root mean square of the wind minus its thermal noise; negative where noise is larger
 roll_speed | m s-1 | time: mean | root mean square of the amplitudes of all rolls minus their noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
@@ -313,24 +315,9 @@ drop_radius | m | time drop: point | radius of the drop
 """
 """A row is a name, its SI unit, its dimensions with the options of its declaration, and what it is in words.
 
-``mean`` and ``point`` say how a value represents its cell, ``sum`` that it counts from the start of the run.
+``mean`` and ``point`` say how a value represents its cell, ``sum`` that it counts from the start of the run, and
+``standard`` the name in the CF standard name table, if it is another than that of the variable.
 """
-
-_STANDARD_NAMES = {
-    "height": "height",
-    "air_temperature": "air_temperature",
-    "air_pressure": "air_pressure",
-    "parcel_potential_temperature": "air_potential_temperature",
-    "environment_dew_point_temperature": "dew_point_temperature",
-    "parcel_virtual_temperature": "virtual_temperature",
-    "water_vapor_partial_pressure": "water_vapor_partial_pressure_in_air",
-    "relative_humidity": "relative_humidity",
-    "humidity_mixing_ratio": "humidity_mixing_ratio",
-    "cloud_liquid_water_mixing_ratio": "cloud_liquid_water_mixing_ratio",
-    "air_density": "air_density",
-    "upward_wind": "upward_air_velocity",
-}
-"""The variables with a name in the CF standard name table."""
 
 _NOT_CELLS = {"wall", "mode", "axis", "molecule", "drop"}
 """Dimensions along which a value does not stand for an interval."""
@@ -350,9 +337,11 @@ def _declared(row: str) -> Variable:
             common["comment"] = "Summed since the start of the run."
         elif option == "flags":
             common["flags"] = tuple(value.split(","))
+        elif option == "standard":
+            common["standard_name"] = value or name
         else:
             common[option] = value or True
-    return Variable(name, dims, units, words, _STANDARD_NAMES.get(name), **common)
+    return Variable(name, dims, units, words, **common)
 
 
 VARIABLES: dict[str, Variable] = {

@@ -275,11 +275,6 @@ def show(
         raise SettingError("runs", None, f"are {len(runs)}", "give one run, or two to stand side by side")
     page = InlinePage(page_text([opened(run) for run in runs], theme=theme, language=language), height)
     if not in_notebook():
-        _open(page)
+        folder = Path(tempfile.mkdtemp(prefix="atmosbox-page-"))  # until the temporary files are cleared
+        webbrowser.open(page.save(folder / "page.html").as_uri())
     return page
-
-
-def _open(page: InlinePage) -> None:
-    """Open a page in the browser, from a file that stays until the computer's temporary files are cleared."""
-    folder = Path(tempfile.mkdtemp(prefix="atmosbox-page-"))
-    webbrowser.open(page.save(folder / "page.html").as_uri())

@@ -129,20 +129,16 @@ def _notebook_bar(name: str) -> Iterator[Show]:
     from IPython.display import HTML, display
 
     began = time.monotonic()
-    handle = display(HTML(_bar(name, 0.0, "", 0.0)), display_id=True)
+    handle = display(HTML(""), display_id=True)
 
     def show(share: float, doing: str) -> None:
-        word = "" if doing in ("running", "done") else doing
-        handle.update(HTML(_bar(name, share, word, time.monotonic() - began)))
+        said = html.escape(name if doing in ("running", "done") else f"{name}: {doing}")
+        seconds = time.monotonic() - began
+        left = f"{seconds * (1.0 - share) / share:.0f} s to go" if share > 0.02 and seconds > 1.0 else ""
+        bar = f'<progress max="1" value="{share:.3f}"></progress> {100.0 * share:.0f} % {left}'
+        handle.update(HTML(f"<label>{said} {bar}</label>"))
 
     try:
         yield show
     finally:
         handle.update(HTML(""))
-
-
-def _bar(name: str, share: float, doing: str, seconds: float) -> str:
-    """Return the bar as HTML: its name, the share that is done, and the remaining time."""
-    said = html.escape(f"{name}: {doing}" if doing else name)
-    left = f"{seconds * (1.0 - share) / share:.0f} s to go" if share > 0.02 and seconds > 1.0 else ""
-    return f'<label>{said} <progress max="1" value="{share:.3f}"></progress> {100.0 * share:.0f} % {left}</label>'

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 from atmosbox.errors import Command, FileError, Option, UnknownSceneError, shown
 
-__all__ = ["REQUIRED", "Summary", "load", "names", "place", "summaries"]
+__all__ = ["REQUIRED", "Summary", "is_path", "load", "names", "place", "summaries"]
 
 REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
 """What every scenario module must define."""
@@ -125,6 +125,12 @@ def summaries() -> dict[str, Summary]:
     return found
 
 
+def is_path(scene: str | os.PathLike[str]) -> bool:
+    """Return whether a scenario is given by the path of its file rather than by its name."""
+    text = os.fspath(scene)
+    return isinstance(scene, os.PathLike) or text.endswith(".py") or "/" in text or os.sep in text
+
+
 def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
     """Load a scenario: one of atmosbox by its name, or your own by the path of its file.
 
@@ -155,7 +161,7 @@ def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
     'atmosbox.scenarios.lifting_dry'
     """
     text = os.fspath(name_or_path)
-    if isinstance(name_or_path, os.PathLike) or text.endswith(".py") or "/" in text or os.sep in text:
+    if is_path(name_or_path):
         return _load_file(Path(os.path.expanduser(text)))
     name = text.replace("_", "-")
     if name not in names():

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from atmosbox.errors import Command, ConfigError, Option, PhysicsError, Setting, on_command_line, shown
+from atmosbox.errors import Command, ConfigError, Option, Setting, on_command_line, shown
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
 from atmosbox.sheet.sums import Measured, SetNumber
 from atmosbox.sheet.text import Change
 from atmosbox.simulation import runner
+from atmosbox.simulation.verification import check_ledger
 
 _LETTERS = "ABCD"
 
@@ -141,8 +142,6 @@ def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | Non
 
     for trial in asked:
         outcome = runner.execute(trial.prepared, progress=show, command=trial.command)
-        if not outcome.ledger <= runner.LEDGER_LIMIT:
-            problem = f"The energy budget of run {trial.letter} is off by {outcome.ledger:.0e}"
-            raise PhysicsError(f"{problem}, more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it.")
+        check_ledger(outcome.ledger, f"run {trial.letter}", "no sheet is made of it")
         made.append(replace(trial, outcome=outcome))
     return tuple(made)

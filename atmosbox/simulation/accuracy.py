@@ -35,15 +35,7 @@ class ExpectedError(NamedTuple):
 
     @property
     def total(self) -> float:
-        """Root mean square error to expect of a single run.
-
-        The standard error of the bias is included in full.
-
-        Examples
-        --------
-        >>> ExpectedError("K", 0.3, 0.0, 0.4, 288.0).total
-        0.5
-        """
+        """Root mean square error to expect of a single run, with the standard error of the bias in full."""
         return math.hypot(self.bias, self.bias_se, self.noise)
 
     def size(self, theory: float | None) -> float:
@@ -60,20 +52,10 @@ class ExpectedError(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """A run of a scene whose errors were measured.
+    """A run of a scene, made ``members`` times with different seeds, whose errors were measured.
 
-    Parameters
-    ----------
-    engine
-        The engine with its options.
-    settings
-        The values that differ from the scene's defaults.
-    cost
-        Processor time of the engine, as a multiple of that in the scene's default run.
-    members
-        Number of runs, each with its own seed.
-    errors
-        The error of each headline, by name.
+    ``settings`` are those that differ from the scene's defaults, ``cost`` is the processor time of the engine as a
+    multiple of that in the scene's default run, and ``errors`` are those of the headlines, by name.
     """
 
     engine: str
@@ -94,18 +76,10 @@ class Measured:
 
 @dataclass(frozen=True)
 class Table:
-    """The measurements of one scene.
+    """The measurements of one scene: the runs, and the labels of their headlines by name.
 
-    Parameters
-    ----------
-    varies
-        The settings that trade accuracy for time; any other setting makes a different experiment.
-    labels
-        Labels of the headlines in a table, by name.
-    ways
-        The measured runs.
-    how
-        How they were measured: the version, the budget [s], the command, and the processor time of the default run [s].
+    ``varies`` are the settings that trade accuracy for time; any other setting makes a different experiment. ``how``
+    tells how they were measured: the version, the budget [s], the command, and the time of the default run [s].
     """
 
     varies: tuple[str, ...]
@@ -145,13 +119,7 @@ class Table:
 
 @functools.cache
 def load() -> Mapping[str, Table]:
-    """Return the measured table that comes with atmosbox, by scene.
-
-    Examples
-    --------
-    >>> "temperature" in load()
-    True
-    """
+    """Return the measured table that comes with atmosbox, by scene."""
     held = json.loads(Path(__file__).with_name("accuracy.json").read_text(encoding="utf-8"))
     return MappingProxyType({scene: Table.of(entry) for scene, entry in held["scenes"].items()})
 
@@ -171,22 +139,11 @@ def said(name: str, value: bool | int | float | str) -> str:
 
 @dataclass(frozen=True)
 class Expectation:
-    """The errors that are expected of a run.
+    """The errors that are expected of a run: those of the measured run ``way``.
 
-    Parameters
-    ----------
-    way
-        The run that was measured.
-    sets
-        The chosen values of the settings that trade accuracy for time.
-    labels
-        Labels of the headlines in a table, by name.
-    target
-        The accuracy that the user asked for; None if the engine was given explicitly.
-    met
-        Whether the expected errors are within the target.
-    differs
-        The settings in which this run differs from the one that was measured.
+    ``sets`` are the chosen values of the settings that trade accuracy for time, ``target`` is the accuracy that the
+    user asked for, None if the engine was given; ``met`` is False if nothing that was measured is within it; and
+    ``differs`` names the settings in which this run differs from the measured one.
     """
 
     way: Measured
@@ -207,12 +164,9 @@ class Expectation:
         way, errors = self.way, {}
         for name, error in way.errors.items():
             errors[name] = {**error._asdict(), "total": error.total, "label": self.labels[name]}
-        made: dict[str, Any] = {
-            "wish": None if self.target is None else self.target.text,
-            "met": self.met,
-            "engine": way.engine,
-        }
-        made |= {"settings": dict(way.settings), "cost": way.cost, "members": way.members}
+        wish = None if self.target is None else self.target.text
+        made: dict[str, Any] = {"wish": wish, "met": self.met, "engine": way.engine, "settings": dict(way.settings)}
+        made |= {"cost": way.cost, "members": way.members}
         return {**made, "differs": list(self.differs), "errors": errors}
 
 
@@ -224,26 +178,9 @@ def choose(
 ) -> Expectation:
     """Return the cheapest measured run of a scene whose expected error is within a target.
 
-    Parameters
-    ----------
-    scene
-        The name of a scene.
-    target
-        The largest error.
-    settings
-        The values that the user has set and that differ from the scene's defaults, by name.
-    why
-        Why a scene is in no table, as the end of a sentence.
-
-    Returns
-    -------
-    Expectation
-        The chosen run. If no run reaches a target with a name, it is the most accurate run, and ``met`` is False.
-
-    Raises
-    ------
-    SettingError
-        If the scene was not measured, or no run is within a target given as a number; the sentence names the best run.
+    If no run reaches a target with a name, it is the most accurate run; a target given as a number is then refused, and
+    so is a scene that was not measured. `settings` are the values that the user has set and that differ from the
+    scene's defaults; `why` is why a scene is in no table, as the end of a sentence.
 
     Examples
     --------
@@ -283,17 +220,7 @@ def choose(
 
 
 def expect(scene: str, engine: str, changed: Mapping[str, Any]) -> Expectation | None:
-    """Return the errors expected of an engine at some settings; None if that run was not measured.
-
-    Parameters
-    ----------
-    scene
-        The name of a scene.
-    engine
-        The engine with its options.
-    changed
-        The values that differ from the scene's defaults.
-    """
+    """Return the errors expected of an engine at changed settings; None if that run was not measured."""
     table = load().get(scene, Table((), {}, ()))
     same = (Expectation(way, table.labels).at(changed) for way in table.ways if way.engine == engine)
     return next((found for found in same if not found.differs), None)

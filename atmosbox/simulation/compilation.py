@@ -1,120 +1,44 @@
-"""Compilation of the kernels before a first run: its progress, its expected time, and compilation in advance."""
+"""Compilation of the kernels before a first run: what is said of it, and compilation in advance."""
 
 from __future__ import annotations
 
 import contextlib
-import json
-import os
-import threading
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import Any
 
-from atmosbox.engine.core.kernel_cache import cache_folder, compilations
+from atmosbox.engine.core.kernel_cache import compilations
 from atmosbox.simulation.preparation import Prepared, build
 
-_USUAL = 15.0  # seconds, if this machine has not compiled the scene yet
-_BREATH = 0.2
-_NEVER_DONE = 0.97
-_FILE = "seconds.json"
+_SENTENCE = "compiling the engine, once on this computer: about 15 s"
 
 
 @contextlib.contextmanager
-def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Callable[[], float]]:
-    """Report the progress of compilation while a block runs, if anything is compiled in the block.
+def told(tell: Callable[[float, str], None]) -> Iterator[None]:
+    """Say that the engine is compiled if anything is compiled while a block runs.
 
-    The expected time is that of the last compilation of the scene on this machine. `tell` is called with the completed
-    share and a sentence, from a separate thread while the compiler works. Yields a function that returns the processor
-    time of the compiler so far [s].
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> with told(prepare("temperature", {}), print) as spent:
-    ...     spent()
-    0.0
+    `tell` is called with the share that is done, zero, and a sentence.
     """
-    name = f"{prepared.scene} {prepared.engine.name}"
-    before, began, depth = 0.0, 0.0, 0
-    over = threading.Event()
-    teller: threading.Thread | None = None
-
-    def spent() -> float:
-        return before + (time.process_time() - began if depth else 0.0)
-
-    def go_on_telling(expected: float, sentence: str) -> None:
-        while not over.wait(_BREATH):
-            if depth:
-                tell(min(spent() / expected, _NEVER_DONE), sentence)
+    said = False
 
     def watch(kernel: str, begins: bool) -> None:
-        nonlocal before, began, depth, teller
-        before, began = spent(), time.process_time()
-        depth = max(depth + (1 if begins else -1), 0)
-        if begins and teller is None:
-            expected = _known().get(name, _USUAL)
-            sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
-            tell(0.0, sentence)
-            teller = threading.Thread(target=go_on_telling, args=(expected, sentence), daemon=True)
-            teller.start()
+        nonlocal said
+        if not said:
+            said = True
+            tell(0.0, _SENTENCE)
 
-    try:
-        with compilations(watch):
-            yield spent
-    finally:
-        over.set()
-        if teller is not None:
-            teller.join()
-        if spent() > 1.0:
-            remember(_FILE, _known() | {name: round(spent(), 1)})
+    with compilations(watch):
+        yield
 
 
 def compile_kernels(prepared: Prepared) -> float:
-    """Compile the kernels of a scene unless they are stored already; return the processor time that it took [s].
+    """Compile the kernels of a scene; return the processor time that it took [s], zero if they are stored already.
 
     The box is built as for a run, since the kernels depend on it, and advanced by a very short time.
     """
-    with told(prepared, lambda share, sentence: None) as spent:
+    began, compiled = time.process_time(), []
+    with told(lambda share, sentence: compiled.append(sentence)):
         setup = build(prepared)
         setup.parcel.advance(0.0)
         step = getattr(setup.parcel, "time_step", 0.0)
         setup.parcel.advance(max(2.0 * step, 1e-4 * setup.frame))
-    return spent()
-
-
-def cache_home() -> Path | None:
-    """Return the folder in which machine code is stored, None if there is none."""
-    folder = cache_folder()
-    return None if folder is None else folder.parent
-
-
-def compiled_here() -> int:
-    """Return the number of bytes of machine code that are stored for the present engine."""
-    folder = cache_folder()
-    return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
-
-
-def _known() -> dict[str, float]:
-    """Return the seconds that compilations took, by scene and engine."""
-    known = remembered(_FILE)
-    return {k: float(v) for k, v in known.items() if isinstance(v, int | float)} if isinstance(known, dict) else {}
-
-
-def remembered(name: str) -> Any:
-    """Return what a file beside the machine code holds; None if it cannot be read."""
-    home = cache_home()
-    try:
-        return json.loads((home / name).read_text(encoding="utf-8")) if home else None
-    except (OSError, ValueError):
-        return None
-
-
-def remember(name: str, held: object) -> None:
-    """Store something beside the machine code; an error is ignored, because nothing depends on these files."""
-    home = cache_home()
-    if home is not None:
-        new = home / f"{name}.{os.getpid()}"
-        with contextlib.suppress(OSError):
-            new.write_text(json.dumps(held), encoding="utf-8")
-            new.replace(home / name)
+    return time.process_time() - began if compiled else 0.0

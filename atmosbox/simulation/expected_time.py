@@ -1,89 +1,43 @@
-"""Expected time of a run on this computer: the time measured where atmosbox was made, times the pace of this one."""
+"""Expected time of a run: the time measured where atmosbox was made."""
 
 from __future__ import annotations
 
 import math
-import statistics
-from typing import NamedTuple
 
 import numpy as np
 
 from atmosbox.simulation.accuracy import load
-from atmosbox.simulation.compilation import remember, remembered
 from atmosbox.simulation.preparation import Prepared
 
-_ENOUGH = 0.2  # seconds of the engine's processor time; shorter runs do not tell the pace of a computer
-_KEPT = 9
 _WIDEST = 30.0  # largest ratio of a setting to the nearest one that was measured
-_FILE = "pace.json"
 
 
-class ExpectedTime(NamedTuple):
-    """Expected time that the engine needs for a run.
+def in_words(seconds: float) -> str:
+    """Return an expected time in words.
 
-    Attributes
-    ----------
-    seconds
-        Processor time [s].
-    here
-        Whether the pace of this computer is known; if not, it is that of the computer where the table was measured.
+    Examples
+    --------
+    >>> in_words(312.0), in_words(0.04)
+    ('about 5 min, if this computer is as fast as ours', 'less than 1 s, if this computer is as fast as ours')
     """
-
-    seconds: float
-    here: bool
-
-    def __str__(self) -> str:
-        """Return it in words.
-
-        Examples
-        --------
-        >>> str(ExpectedTime(312.0, True)), str(ExpectedTime(0.04, False))
-        ('about 5 min', 'less than 1 s, if this computer is as fast as ours')
-        """
-        size, unit = (1.0, "s") if self.seconds < 90.0 else (60.0, "min") if self.seconds < 5400.0 else (3600.0, "h")
-        number = self.seconds / size
-        said = f"about {float(f'{number:.{1 if number < 10.0 else 2}g}'):g} {unit}"
-        if self.seconds < 1.0:
-            said = "less than 1 s"
-        return said if self.here else f"{said}, if this computer is as fast as ours"
+    size, unit = (1.0, "s") if seconds < 90.0 else (60.0, "min") if seconds < 5400.0 else (3600.0, "h")
+    number = seconds / size
+    said = f"about {float(f'{number:.{1 if number < 10.0 else 2}g}'):g} {unit}"
+    return f"{'less than 1 s' if seconds < 1.0 else said}, if this computer is as fast as ours"
 
 
-def expected_time(prepared: Prepared) -> ExpectedTime | None:
-    """Return the expected time of a run; None if no similar run was measured.
+def expected_time(prepared: Prepared) -> float | None:
+    """Return the processor time of a run on the computer where atmosbox was made [s]; None if it is not known.
+
+    It is that of the nearest run that was measured, times powers of the ratios of their settings. The powers are those
+    nearest to one (twice the size, twice the time) with which the measured runs agree.
 
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> short, long = (expected_time(prepare("lifting-dry", {"ascent": ascent})) for ascent in (200.0, 800.0))
-    >>> 3.0 < long.seconds / short.seconds < 5.0
+    >>> 3.0 < long / short < 5.0
     True
-    """
-    seconds = _measured_seconds(prepared)
-    if seconds is None:
-        return None
-    paces = _paces()
-    return ExpectedTime(seconds * (statistics.median(paces) if paces else 1.0), bool(paces))
-
-
-def remember_pace(prepared: Prepared, seconds: float) -> None:
-    """Store how long the engine took for a run [s], which improves the next expected time."""
-    expected = _measured_seconds(prepared)
-    if expected is not None and seconds > _ENOUGH:
-        remember(_FILE, [*_paces(), round(seconds / expected, 3)][-_KEPT:])
-
-
-def _paces() -> list[float]:
-    """Return the ratios of measured to expected time of the last runs on this computer."""
-    held = remembered(_FILE)
-    good = isinstance(held, list) and all(isinstance(each, int | float) and 0.0 < each < 1e6 for each in held)
-    return [float(each) for each in held] if good else []
-
-
-def _measured_seconds(prepared: Prepared) -> float | None:
-    """Return the time of a run on the computer where the table was measured [s]; None if it is not known.
-
-    It is that of the nearest run that was measured, times powers of the ratios of their settings. The powers are those
-    nearest to one (twice the size, twice the time) with which the measured runs agree.
     """
     table = load().get(prepared.scene)
     if table is None or "seconds" not in table.how:

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 _LONGEST = 200_000  # characters
 _MOST_TURNS = 5_000
 _MOST_FRAMES = 1_000_000
-_SAID = 20  # turns that the comment of a file names
 _LINK = re.compile(
     r"atmosbox=(?P<version>[\w.+-]{1,30})&scene=(?P<scene>[\w.%~-]{1,300})(?P<settings>(?:&\w+=[\w.%~-]*)*)"
     r"&seed=(?P<seed>[0-9]{1,16})(?:&turns=(?P<turns>[\w:,.+-]+))?(?:&predict=(?P<prediction>[\w:,.+-]+))?"
@@ -45,14 +44,9 @@ _PREDICTION = re.compile(rf"\w+:{_NUMBER}(?:,{_NUMBER}){{4}}", re.ASCII)
 
 
 class Turn(NamedTuple):
-    """A knob that was turned between two frames.
+    """A knob that was turned when a number of frames were complete.
 
-    Parameters
-    ----------
-    frame
-        Number of frames that were complete.
-    name, value
-        The knob, and its new value in its unit; None if it went back to how it was before its first turn.
+    The value is in the unit of the knob; None if it went back to how it was before its first turn.
     """
 
     frame: int
@@ -62,17 +56,7 @@ class Turn(NamedTuple):
 
 @dataclass(frozen=True)
 class Replay:
-    """What a link says of a run, beside its scene and its settings.
-
-    Parameters
-    ----------
-    link
-        The link, from ``#`` on.
-    frames
-        Number of frames of the run; 0 for as many as the scene has.
-    turns
-        The turns of knobs, in order.
-    """
+    """What a link says beside scene and settings: the number of frames, 0 for that of the scene, and the turns."""
 
     link: str
     frames: int
@@ -109,18 +93,12 @@ class Replay:
         ]  # fmt: skip
         if not told:
             return {}
-        words = [
-            f"at {t['elapsed_time']:.6g} {t['time_unit']} {t['name']} "
-            + ("as at the start" if t["value"] is None else f"= {t['value']:g} {t['unit']}".strip())
-            for t in told[:_SAID]
-        ]
-        more = [f"and {len(told) - _SAID} more, in atmosbox_turns"] if len(told) > _SAID else []
         panels = map(without_headlines, from_json(others["atmosbox_panels"]))
+        turned = "Knobs were turned, see atmosbox_turns; averages begin after the last."
         return {
             "atmosbox_turns": json.dumps(told),
             "atmosbox_panels": to_json(panel for panel in panels if panel is not None),
-            "comment": f"Knobs turned: {'; '.join([*words, *more])}. Averages begin after the last. "
-            + str(others.get("comment", "")),
+            "comment": f"{turned} {others.get('comment', '')}".rstrip(),
         }
 
 

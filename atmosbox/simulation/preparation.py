@@ -14,7 +14,7 @@ from atmosbox import scenarios
 from atmosbox.engine import PackingError as EnginePackingError
 from atmosbox.engine import RefusedError
 from atmosbox.engine.core.marching import MarchingParcel
-from atmosbox.errors import Command, EngineError, Option, PackingError, SettingError, shown
+from atmosbox.errors import AtmosboxError, Command, EngineError, FileError, Option, PackingError, SettingError, shown
 from atmosbox.scene.engines import EXACT, EngineChoice, choose
 from atmosbox.scene.instruments import Discs
 from atmosbox.scene.settings import Parameter, SceneSettings
@@ -144,6 +144,23 @@ def prepare(
     elif chosen != usual_engine(module, checked):
         expectation = accuracies.expect(name, str(chosen), checked.changed())
     return Prepared(name, module, checked, save_molecules, chosen, expectation)
+
+
+def agreed(
+    scene: str | os.PathLike[str] | None, named: str, source: str, option: str, error: type[AtmosboxError] = FileError
+) -> str:
+    """Return the scene, which a user and a file, `source`, must not name differently.
+
+    A file alone never makes atmosbox run a program: the path of a user's own scene must be typed.
+    """
+    typed = os.fspath(scene or named)
+    if not scene and scenarios.is_path(named):
+        problem = f"{source} is for the scene in the file {named}, which must be typed"
+        raise error(problem, Command("run", (named, Option(option, source))))
+    by_name = named and not scenarios.is_path(named) and not scenarios.is_path(typed)
+    if by_name and typed.replace("_", "-") != named.replace("_", "-"):
+        raise error(f"{source} is for the scene {named}, not for {scene}: leave one of them out.")
+    return typed
 
 
 def card(prepared: Prepared) -> Card:

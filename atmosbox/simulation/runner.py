@@ -11,14 +11,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import RefusedError, StalledError
-from atmosbox.errors import Command, EngineError, FileError, Option, SoundingError
+from atmosbox.errors import EngineError, FileError, Option, SoundingError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
-from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.link import check_nothing_changes, read_link
-from atmosbox.simulation.preparation import Prepared, build, card, prepare, replayed
+from atmosbox.simulation.preparation import Prepared, agreed, build, card, prepare, replayed
 from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.restart import Restart, check_alike, from_file, put_back, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of, verify
@@ -114,7 +113,7 @@ def execute(
             with uninterrupted():
                 checkpoint.load_libraries()
             stack.callback(checkpoint.begin().release)
-        with told(prepared, tell):
+        with told(tell):
             setup = build(prepared)
             setup.parcel.advance(0.0)
         for sentence in setup.doubts:
@@ -130,10 +129,7 @@ def execute(
             put_back(restart, recording)
             if recording.frames >= frames:
                 raise FileError(f"{restart.source} is finished", from_file(restart.source), " to run it again")
-        done = _recorded(recording, frames, checkpoint, tell)
-    if prepared.replay is None:
-        remember_pace(prepared, done.engine_seconds)
-    return done
+        return _recorded(recording, frames, checkpoint, tell)
 
 
 def _recorded(recording: Recording, frames: int, checkpoint: Checkpoint | None, tell: Progress) -> Outcome:
@@ -209,14 +205,8 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
         If the file belongs to another scene, or to one of your own whose path is not given.
     """
     made = restart.about["settings"]
-    named = str(made["scene"])
-    own = named.endswith(".py") or os.sep in named
-    if scene is None and own:
-        problem = f"{restart.source} is for the scene in the file {named}, which must be typed"
-        raise FileError(problem, Command("run", (named, Option("resume", str(restart.source)))))
-    if scene is not None and os.fspath(scene).replace("_", "-") != named.replace("_", "-"):
-        raise FileError(f"{restart.source} is for the scene {named}, not for {scene}: leave one of them out.")
-    typed, engine, kept = named if scene is None else scene, str(made["engine"]), made["save_molecules"]
+    typed = agreed(scene, str(made["scene"]), str(restart.source), "resume")
+    engine, kept = str(made["engine"]), made["save_molecules"]
     prepared = prepare(typed, made["settings"], engine=engine, save_molecules=kept)
     again = read_link(made["replay"])[2] if "replay" in made else None
     return replace(prepared, expectation=None, stated=made.get("accuracy"), replay=again)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, PhysicsError
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import Headline
 from atmosbox.simulation.accuracy import ExpectedError
@@ -30,6 +30,14 @@ class Check(NamedTuple):
     name: str
     passed: bool
     sentence: str
+
+
+def check_ledger(residual: float, whose: str, remedy: str) -> None:
+    """Refuse a run whose energy budget is not closed."""
+    if not residual <= LEDGER_LIMIT:
+        raise PhysicsError(
+            f"The energy budget of {whose} is off by {residual:.0e}, more than {LEDGER_LIMIT:.0e}: {remedy}."
+        )
 
 
 def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> tuple[Headline, ...]:
@@ -96,15 +104,12 @@ def verify(dataset: xr.Dataset) -> list[Check]:
     frames = int(dataset.sizes.get("elapsed_time", 0))
     what = f"the sweep is {status}" if "member" in dataset.sizes else f"the run is {status}, with {frames} frames"
     checks.append(Check("complete", status == "complete", what))
-    bad = [
-        str(name)
-        for name, values in dataset.variables.items()
-        if values.dtype.kind == "f" and np.isinf(values.values).any()
-    ]
+    floats = {name: each for name, each in dataset.variables.items() if each.dtype.kind == "f"}
+    bad = [str(name) for name, each in floats.items() if np.isinf(each.values).any()]
     checks.append(Check("finite", not bad, f"infinite numbers in {', '.join(bad)}" if bad else "no number is infinite"))
     if "ledger_residual" in dataset:
         worst = float(np.max(dataset["ledger_residual"].values)) if frames else math.nan
-        closed = worst <= LEDGER_LIMIT
+        closed = bool(worst <= LEDGER_LIMIT)
         said = f"closed to {worst:.0e}" if closed else f"not closed: {worst:.0e} is missing"
         checks.append(Check("ledger", closed, f"the energy budget of the run is {said}"))
         checks.append(_balance(dataset))
@@ -127,7 +132,7 @@ def _balance(dataset: xr.Dataset) -> Check:
 
     terms = {name: dataset[name].values for name in (*STORES, *GIVEN, *_GIVEN_BEFORE) if name in dataset}
     worst = float(np.max(residual(terms))) if dataset.sizes["elapsed_time"] else math.nan
-    passed = worst <= LEDGER_LIMIT
+    passed = bool(worst <= LEDGER_LIMIT)
     what = f"energy minus heat{', what the scheme made' if 'numerical_heat' in terms else ''} and work"
     said = f"is{'' if passed else ' not'} constant: it changes by {worst:.0e} of it{' at most' if passed else ''}"
     return Check("balance", passed, f"{what} {said}")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming
     from atmosbox.scene.headline import Headline
     from atmosbox.scene.settings import Parameter
-    from atmosbox.simulation.preparation import Card, Prepared
+    from atmosbox.simulation.preparation import Prepared
     from atmosbox.simulation.runner import Outcome
 
 
@@ -194,20 +194,6 @@ def outcome_lines(outcome: Outcome, path: Path, width: int, expected: Sequence[s
         f"file: {path}",
         f"next: {next_command('plot', path)}",
     ]
-
-
-def card_json(card: Card) -> dict[str, Any]:
-    """Return a model card as a record for JSON."""
-    return {
-        "scene": card.scene,
-        "title": card.title,
-        "story": card.story,
-        "facts": dict(card.facts),
-        "parameters": [
-            {part: getattr(p, part) for part in ("name", "unit", "default", "low", "high", "choices", "kind", "help")}
-            for p in card.parameters
-        ],
-    }
 
 
 def scene_lines(summaries: Mapping[str, Sequence[Any]], width: int) -> list[str]:

@@ -145,8 +145,9 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
     run = read("run.nc")
     np.testing.assert_array_equal(run.collision_count, table["collision_count"])
     np.testing.assert_allclose(run.wall_temperature[:, 4], table["wall_temperature[z_low]"])
-    assert [turn["frame"] for turn in json.loads(run.atmosbox_turns)] == [30, 60, 90]
-    assert "at 0.06 ns temperature = 300 degC; at 0.12 ns temperature = -100 degC" in run.comment
+    told = [[turn[part] for part in ("frame", "time_unit", "value", "unit")] for turn in json.loads(run.atmosbox_turns)]
+    assert told == [[30, "ns", 300.0, "degC"], [60, "ns", -100.0, "degC"], [90, "ns", None, "degC"]]
+    assert run.comment.startswith("Knobs were turned, see atmosbox_turns")
     assert run.atmosbox_headlines == "[]"  # a mean over all these temperatures has no theory
     # the histogram is that of the time after the last turn, which undid both others
     np.testing.assert_allclose(run.air_temperature_theory[-1], 298.15)
