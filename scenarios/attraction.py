@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 title = "What makes a gas become a liquid?"
 level = "second year"
 minutes = 20
-ladder = (Series("exact", "molecules", (200, 400, 800)),)
+series = (Series("exact", "molecules", (200, 400, 800)),)
 """Runs worth comparing: only the exact engine has an attraction; with fewer molecules there are fewer clusters."""
 FRAMES = 150
 SETTLE = 50

@@ -55,7 +55,7 @@ FEW = 100
 """Number of molecules that come or go below which the errors are those of random events, and not from blocks."""
 
 
-ladder = (Series("exact", "duration", (10, 20)), Series("dsmc", "duration", (10, 20, 40)))
+series = (Series("exact", "duration", (10, 20)), Series("dsmc", "duration", (10, 20, 40)))
 """Runs worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
 
 

@@ -58,7 +58,7 @@ RADII = np.linspace(0.3e-9, 2.5e-9, 221)
 HIGHEST = 4.0
 """Relative humidity up to which these curves are drawn."""
 
-ladder = (Series("exact", "molecules", (1500, 3000, 6000)),)
+series = (Series("exact", "molecules", (1500, 3000, 6000)),)
 """Runs worth comparing: the more molecules there are, the less the humidity scatters."""
 
 

@@ -181,7 +181,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
 
 def test_every_way_of_the_shipped_table_can_be_run_and_every_scene_has_its_default_run():
     held = accuracy.load()
-    declared = {name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")}
+    declared = {name for name in scenarios.names() if hasattr(scenarios.load(name), "series")}
     assert declared == set(scenarios.names()) >= set(held)
     not_measured = {"attraction", "convection", "diffusion", "nuclei"}
     assert declared - set(held) <= not_measured, "all others are measured"

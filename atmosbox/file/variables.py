@@ -5,7 +5,7 @@ that is not finite means that the run is broken. Any other variable may be NaN w
 example in a layer that no molecule visited.
 
 A name that ends in ``_se``, ``_count``, ``_theory`` or ``_tolerance`` needs no entry of its own: `variable` derives it
-from its parent, as the standard error, the number of samples, the closed-form answer or the allowed deviation.
+from its parent, as the standard error, the number of samples, the answer of theory or the allowed deviation.
 
 Only one variable has a given CF standard name, so that a program that looks for ``air_temperature`` by that name
 finds one variable: the value measured in the whole box. Variables of a part of the box, of its environment or of
@@ -136,18 +136,18 @@ SUFFIXES = ("_se", "_count", "_theory", "_tolerance")
 
 
 def derived(parent: Variable, suffix: str) -> Variable:
-    """Return the declaration of a variable's standard error, number of samples, closed-form answer or tolerance.
+    """Return the declaration of a variable's standard error, number of samples, answer of theory or tolerance.
 
     Examples
     --------
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure of the air on the walls")
     >>> derived(pressure, "_theory").long_name
-    'closed-form answer for the pressure of the air on the walls'
+    'answer of theory for the pressure of the air on the walls'
     """
     name, words = parent.name + suffix, parent.long_name
     plain = replace(parent, name=name, cell_methods=None, ledger=False, comment=None, dtype="f8", coordinate=False)
     if suffix == "_theory":
-        return replace(plain, long_name=f"closed-form answer for the {words}", standard_name=None)
+        return replace(plain, long_name=f"answer of theory for the {words}", standard_name=None)
     plain = replace(plain, positive=None, difference=True)
     if suffix == "_tolerance":
         return replace(plain, long_name=f"allowed deviation from theory of the {words}", standard_name=None)
