@@ -86,7 +86,7 @@ class Settings(SceneSettings):
         widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
         gap = growth.box.side * growth.box.scale.length / _side(self)
         if 2.0 * self.drop_size * widest > gap:
-            problem = f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away"
+            problem = f"would let a drop that takes all the vapour touch the next, {1e9 * gap:.3g} nm away"
             most = math.floor(50.0 * gap / widest) / 100.0
             raise self.refusal("drop_size", problem, ", or fewer drops", at_most=most)
 

@@ -75,7 +75,7 @@ def conventions(path: Path) -> Conventions:
         return Conventions(False, "; ".join(found))
     if done.returncode:  # it found nothing wrong, but one of its own tests has failed
         return Conventions(None, f"{CHECKER} does not work for this file: {last}")
-    return Conventions(True, "the file keeps to the CF-1.11 conventions, to the letter")
+    return Conventions(True, "the file follows the CF-1.11 conventions")
 
 
 def _messages(report: dict[str, Any]) -> list[str]:

@@ -86,7 +86,7 @@ class OutputLock:
             owner = _owner(os.read(opened, 1000))
             if held is False or (owner and self._lives(owner, held is True, opened)):
                 whose = f"process {owner['pid']} on {owner['host']} since {owner['since']}" if owner else "another run"
-                again = f"; if it runs no more, remove {self.path}"
+                again = f"; if that has ended, remove {self.path}"
                 raise BusyError(f"{path} is being written by {whose}", "wait for it, or ", *ANOTHER_NAME, again)
             with contextlib.suppress(OSError):
                 if os.path.samestat(os.fstat(opened), os.stat(self.path)):

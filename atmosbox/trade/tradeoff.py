@@ -241,7 +241,7 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
         "engine_seconds": (cpu, "processor time that the engine takes in a run", "s"),
         "cost": (cost, "processor time of the engine as a multiple of that in the reference", "1"),
         "members": ([len(done) for done in trials], "number of runs", "1"),
-        "energy_drift": (each(max, "made"), "largest energy that the scheme itself has made, as a share", "1"),
+        "energy_drift": (each(max, "made"), "largest error of the engine in the energy, as a share", "1"),
         "ledger": (each(max, "ledger"), "largest residual of the energy budget", "1"),
         "missed": (missed, "share of the collisions of the reference that are missing", "1"),
         "escaped": (each(max, "escaped"), "most molecules outside the box", "1"),
