@@ -163,7 +163,7 @@ _TABLE = """
 elapsed_time | s | time: ledger | time since the start of the run
 height | m | height: ledger axis=Z positive=up | height of the middle of the layer
 speed | m s-1 | speed: ledger | speed of a molecule, middle of the bin
-energy | J | energy: ledger | energy of a molecule of water compared with one at rest in the liquid, middle of the bin
+energy | J | energy: ledger | energy of a water molecule, counted from one at rest in the liquid, middle of the bin
 distance | m | distance: ledger | distance from the left wall, middle of the bin
 radius | m | radius: ledger | radius of a drop
 mode | 1 | mode: ledger | number of half waves across the box
@@ -177,7 +177,7 @@ mean_molecular_speed | m s-1 | time: mean | mean speed of the molecules
 kinetic_energy | J | time: point ledger | kinetic energy of the molecules
 rotational_energy | J | time: point ledger | rotational energy of the molecules
 potential_energy | J | time: point ledger | potential energy of the molecules, from gravity and attraction
-numerical_heat | J | time: point ledger | energy that an approximate engine has added by its own error
+numerical_heat | J | time: point ledger | energy added by the error of an approximate engine
 ledger_residual | 1 | time: point ledger | residual of the energy budget, as a share of the largest energy in it
 collision_count | 1 | time: point sum dtype=i8 | number of collisions between molecules
 wall_hit_count | 1 | time: point sum dtype=i8 | number of hits of molecules on walls
@@ -187,7 +187,7 @@ gravity | m s-2 | time: point | acceleration of gravity, if it was changed durin
 pool_open_share | 1 | time: point | share of the pool that is open, if it was changed during the run
 heat_from_wall | J | time wall: point sum ledger | heat given to the molecules by the wall
 wall_pressure | Pa | time wall: mean | pressure of the air on the wall
-air_temperature_noise | K | time: difference | expected standard deviation of the temperature of so few molecules
+air_temperature_noise | K | time: difference | expected scatter of the temperature of so few molecules
 wall_temperature | K | time wall: point | temperature of the wall
 # Molecules that attract each other
 largest_drop_molecule_count | 1 | time: point dtype=i8 | number of molecules in the largest drop
@@ -196,13 +196,13 @@ attraction_energy | J | time: point ledger | potential energy of these pairs
 molecular_energy | J | time: point ledger | kinetic and potential energy of all molecules
 heat_from_bath | J | time: point sum ledger | heat given to the molecules by the thermostat
 work_by_attraction | J | time: point sum ledger | energy given to the molecules by changes of the attraction
-virial_pressure | Pa | time: mean | pressure from the motion of the molecules and the forces between them
+virial_pressure | Pa | time: mean | pressure from the motion of molecules and the forces between them
 normal_pressure | Pa | time: mean | pressure perpendicular to the surface of the liquid
 surface_tension | N m-1 | time: mean | surface tension of the liquid
 liquid_number_density | m-3 | time: mean | number of molecules in a cubic metre of liquid
 vapor_number_density | m-3 | time: mean | number of molecules in a cubic metre of vapour
-liquid_well_energy | J | time: mean | mean energy of attraction of a molecule in the liquid
-vapor_well_energy | J | time: mean | mean energy of attraction of a molecule in the vapour
+liquid_well_energy | J | time: mean | energy of attraction per molecule in the liquid
+vapor_well_energy | J | time: mean | energy of attraction per molecule in the vapour
 # A parcel that is lifted
 parcel_temperature | K | time: point | temperature of the parcel
 parcel_potential_temperature | K | time: point | potential temperature of the parcel, reduced to 1000 hPa
@@ -285,8 +285,8 @@ gas | | molecule: dtype=i1 flags=left,right | which of two gases the molecule be
 # Discs that collide in a plane
 kinetic_energy_light | J | time: point ledger | mean kinetic energy of a disc of the lighter half
 kinetic_energy_heavy | J | time: point ledger | mean kinetic energy of a disc of the heavier half
-running_energy_light | J | time: point ledger | mean kinetic energy of a disc of the lighter half since the start
-running_energy_heavy | J | time: point ledger | mean kinetic energy of a disc of the heavier half since the start
+running_energy_light | J | time: point ledger | mean kinetic energy of a lighter disc since the start
+running_energy_heavy | J | time: point ledger | mean kinetic energy of a heavier disc since the start
 energy_change | 1 | time: point ledger | relative change of the kinetic energy since the start, without heat
 momentum_residual | 1 | time: point | residual of the momentum budget of discs and walls, as a share of the \
 largest momentum possible
