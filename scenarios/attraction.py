@@ -116,7 +116,7 @@ class Settings(SceneSettings):
         if self.heating and (self.start != "drop" or self.bath != "random" or self.air):
             wanted: dict[str, str | float] = {"start": "drop", "bath": "random", "air": 0.0}
             name, only = next(pair for pair in wanted.items() if getattr(self, pair[0]) != pair[1])
-            raise self.refusal(name, "does not go with heating", Setting(name, only), " or ", Setting("heating", 0.0))
+            raise self.refusal(name, "is impossible with heating", Setting(name, only), " or ", Setting("heating", 0.0))
         warmth = _warmth(self)
         if self.start != "vapour" and not warmth < 0.97 * law.WELL_CRITICAL_TEMPERATURE:
             most = 0.97 * law.SIMPLE_FLUIDS[self.substance].critical_temperature * self.attraction
