@@ -192,7 +192,7 @@ wall_temperature | K | time wall: point | temperature of the wall
 # Molecules that attract each other
 largest_drop_molecule_count | 1 | time: point dtype=i8 | number of molecules in the largest drop
 well_count | 1 | time: point dtype=i8 | number of pairs of molecules near enough to attract each other
-attraction_energy | J | time: point ledger | potential energy of these pairs
+attraction_energy | J | time: point ledger | potential energy of all molecules from attraction
 molecular_energy | J | time: point ledger | kinetic and potential energy of all molecules
 heat_from_bath | J | time: point sum ledger | heat given to the molecules by the thermostat
 work_by_attraction | J | time: point sum ledger | energy given to the molecules by changes of the attraction
@@ -215,7 +215,7 @@ parcel_virtual_temperature | K | time | virtual temperature of the parcel, witho
 parcel_density_temperature | K | time | temperature of dry air as dense as the parcel with its droplets
 parcel_buoyancy | m s-2 | time | buoyancy of the parcel, with the weight of its droplets
 environment_pressure | Pa | time | pressure of the environment
-adiabat_temperature | K | time | temperature of the parcel's adiabat at its pressure
+adiabat_temperature | K | time | temperature of the adiabat at the pressure of the parcel
 dry_air_adiabat_temperature | K | time | temperature of the adiabat of dry air at the pressure of the parcel
 parcel_volume | m3 | time: point ledger | volume of the parcel
 piston_height | m | time: point ledger | distance of the piston from the floor of the box
@@ -285,9 +285,9 @@ gas | | molecule: dtype=i1 flags=left,right | which of two gases the molecule be
 # Discs that collide in a plane
 kinetic_energy_light | J | time: point ledger | mean kinetic energy of a disc of the lighter half
 kinetic_energy_heavy | J | time: point ledger | mean kinetic energy of a disc of the heavier half
-running_energy_light | J | time: point ledger | mean kinetic energy of a lighter disc since the start
-running_energy_heavy | J | time: point ledger | mean kinetic energy of a heavier disc since the start
-energy_change | 1 | time: point ledger | relative change of the kinetic energy since the start, without heat
+running_energy_light | J | time: point ledger | kinetic energy of a disc of the lighter half, mean since the start
+running_energy_heavy | J | time: point ledger | kinetic energy of a disc of the heavier half, mean since the start
+energy_change | 1 | time: point ledger | relative change of the kinetic energy since the start, apart from heat
 momentum_residual | 1 | time: point | residual of the momentum budget of discs and walls, as a share of the \
 largest momentum possible
 momentum | kg m s-1 | time axis: point ledger | total momentum of the discs
