@@ -18,7 +18,7 @@ Importing `atmosbox` is quick: the engine and the data libraries are imported wh
 
 Where things are: `atmosbox.interface` holds these functions; `atmosbox.scenarios` the scenes;
 `atmosbox.engine` is the physics, to be read in the order that its docstring gives; `atmosbox.theory` holds
-the closed-form answers.
+closed forms and solved equations.
 """
 
 from __future__ import annotations

@@ -14,8 +14,8 @@ exception that a Python programmer would catch, and has the status with which th
     |-- SoundingError (ValueError)       2   a sounding cannot be understood, or cannot be true
     |-- FileError (OSError)              2   a file cannot be read or written, exists already, or is not from atmosbox
     |   `-- DiskFullError                1   the disk filled up while a run was saved
-    |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer valid
-    `-- PhysicsError (ArithmeticError)   3   a physics check failed: the run disagrees with the textbook
+    |-- EngineError (RuntimeError)       1   the engine, or what it needs, cannot begin or cannot go on
+    `-- PhysicsError (ArithmeticError)   3   the energy budget of a run is not closed
 """
 
 from __future__ import annotations
@@ -324,10 +324,10 @@ class DiskFullError(FileError):
 
 
 class EngineError(AtmosboxError, RuntimeError):
-    """The engine stopped, because its state is no longer one that the laws of motion allow."""
+    """The engine, or what it needs, cannot begin or cannot go on."""
 
 
 class PhysicsError(AtmosboxError, ArithmeticError):
-    """A physics check failed: the run disagrees with the textbook by more than its error allows."""
+    """The energy budget of a run is not closed."""
 
     exit_code = 3

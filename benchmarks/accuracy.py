@@ -3,11 +3,11 @@
     python benchmarks/accuracy.py [SCENE ...] [--budget 60s]
     python benchmarks/accuracy.py FILE.nc ...                  from measurements of `atmosbox tradeoff`
 
-`atmosbox.trade.tradeoff` measures every scene that declares a ladder: each way of running it as often as the budget
-allows, with different seeds. For each headline the table holds the mean difference from theory (bias), its standard
-error, and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of running it
-holds the processor time of the engine as a ratio to that of the scene's default run in the same measurement. It also
-holds the seconds of the default run on the computer of the measurement.
+`atmosbox.trade.tradeoff` measures every scene that declares series of runs: each way of running it as often as the
+budget allows, with different seeds. For each headline the table holds the mean difference from theory (bias), its
+standard error, and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of
+running it holds the processor time of the engine as a ratio to that of the scene's default run in the same measurement.
+It also holds the seconds of the default run on the computer of the measurement.
 
 The table leaves out ways that ran less than four times (the scatter of so few seeds says little), ways in which
 molecules left the box, and ways whose energy budget did not close. Entries of scenes that are not named stay as they
@@ -45,9 +45,9 @@ FEWEST = 4
 
 
 def varies(module: Any) -> list[str]:
-    """Return the settings that a scene's ladder varies, in order to trade accuracy for time."""
+    """Return the settings that the series of a scene vary, in order to trade accuracy for time."""
     own = {parameter.name for parameter in module.Settings.describe()}
-    return sorted({series.vary for series in module.ladder} & own)
+    return sorted({series.vary for series in module.series} & own)
 
 
 def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
@@ -57,8 +57,8 @@ def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
     """
     names = [name for name in dataset.quantity.values if name not in CURVES]
     found: dict[str, dict[str, Any]] = {}
-    for rung in range(dataset.sizes["rung"]):
-        one = dataset.isel(rung=rung)
+    for k in range(dataset.sizes["configuration"]):
+        one = dataset.isel(configuration=k)
         members, why = int(one.members), str(one.left_out.values)
         if one.escaped > 0:
             why = "molecules left the box"
@@ -67,7 +67,7 @@ def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
         elif members >= FEWEST and why.startswith("left out"):
             why = ""
         if why or members < FEWEST:
-            print(f"  not in the table: {one.rung.values}: {why or f'{members} runs, give a longer --budget'}")
+            print(f"  not in the table: {one.configuration.values}: {why or f'{members} runs, give a longer --budget'}")
             continue
         errors = {}
         for name in names:
@@ -162,7 +162,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Measure, print the tables and save them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
-        "sources", nargs="*", metavar="SCENE|FILE.nc", help="scenes or measurements; all that have a ladder by default"
+        "sources", nargs="*", metavar="SCENE|FILE.nc", help="scenes or measurements; all that declare series by default"
     )
     parser.add_argument("--budget", default="60s", help="for how long each of them is measured")
     parser.add_argument("--seed", type=int, default=1, help="the first seed")
@@ -170,7 +170,7 @@ def main(arguments: list[str] | None = None) -> None:
     asked = parser.parse_args(arguments)
     try:
         budget = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(asked.budget))
-        declared = [name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")]
+        declared = [name for name in scenarios.names() if hasattr(scenarios.load(name), "series")]
         for source in asked.sources or declared:
             print(f"\n{source}", flush=True)
             command = f"python benchmarks/accuracy.py {source} --budget {asked.budget} --seed {asked.seed}"

@@ -56,7 +56,7 @@ FILLED = 3.0
 JUMP = 0.563
 """Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas without collisions."""
 
-ladder = (
+series = (
     Series("exact", "duration", (50, 100, 200, 400), {"molecules": 3000}),
     Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2), {"molecules": 3000, "duration": 50}),
     Series("dsmc", "duration", (50, 100, 200, 400), {"molecules": 3000}),

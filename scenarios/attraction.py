@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 title = "What makes a gas become a liquid?"
 level = "second year"
 minutes = 20
-ladder = (Series("exact", "molecules", (200, 400, 800)),)
+series = (Series("exact", "molecules", (200, 400, 800)),)
 """Runs worth comparing: only the exact engine has an attraction; with fewer molecules there are fewer clusters."""
 FRAMES = 150
 SETTLE = 50
@@ -116,20 +116,20 @@ class Settings(SceneSettings):
         if self.heating and (self.start != "drop" or self.bath != "random" or self.air):
             wanted: dict[str, str | float] = {"start": "drop", "bath": "random", "air": 0.0}
             name, only = next(pair for pair in wanted.items() if getattr(self, pair[0]) != pair[1])
-            raise self.refusal(name, "is not for heating", Setting(name, only), " or ", Setting("heating", 0.0))
+            raise self.refusal(name, "is impossible with heating", Setting(name, only), " or ", Setting("heating", 0.0))
         warmth = _warmth(self)
         if self.start != "vapour" and not warmth < 0.97 * law.WELL_CRITICAL_TEMPERATURE:
             most = 0.97 * law.SIMPLE_FLUIDS[self.substance].critical_temperature * self.attraction
-            problem = f"is too warm for a {self.start} of this {self.substance}"
+            problem = f"is too warm for a {self.start} of {self.substance} with this attraction"
             raise self.refusal("temperature", problem, ", or ", Setting("start", "vapour"), at_most=math.floor(most))
         sides, _ = _sides(self)
         if min(sides) < 2.2 * RANGE:
-            problem = "are too few for a box in which none attracts its own image"
+            problem = "make the periodic box so small that a molecule attracts its own image"
             raise self.refusal("molecules", problem, "give more of them, or ", Setting("start", "vapour"))
         held = math.prod(sides) * math.pi / 6.0 * law.WELL_CRITICAL_DENSITY * (self.density + self.air)
         if self.start == "vapour" and held > 0.45 * math.prod(sides):
             raise SettingError(
-                "density", self.density + self.air, "with the air is too dense to be mixed", "give less of either"
+                "density", self.density + self.air, "with the air is too dense a mixture", "give less of either"
             )
 
 

@@ -53,7 +53,7 @@ CORE = 20.0
 """Mass of the nucleus of a drop, in molecules of air."""
 
 
-ladder = (
+series = (
     Series("exact", "molecules", (1000, 3000, 10_000)),
     Series("exact", "duration", (20, 40), {"molecules": 3000}),
     Series("dsmc", "molecules", (10_000, 30_000)),

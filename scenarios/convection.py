@@ -86,7 +86,7 @@ CASES: dict[str, dict[str, Any]] = {
 TITLES = {"inversion": "Cold air lies below warm air", "stable": "The air stays at rest"}
 """Titles of the temperature in cases in which the air does not turn over."""
 
-ladder = (
+series = (
     Series("exact", "duration", (300, 600, 1200), {"molecules": 2000}),
     Series("stepped", "delta", (0.4, 0.2, 0.1), {"molecules": 2000, "duration": 300}),
     Series("dsmc", "molecules", (5000, 20_000, 50_000)),

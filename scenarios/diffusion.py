@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 title = "Why do gases mix?"
 level = "school"
 minutes = 15
-ladder = (Series("exact", "molecules", (1500, 3000, 6000, 12_000)), Series("dsmc", "molecules", (12_000, 48_000)))
+series = (Series("exact", "molecules", (1500, 3000, 6000, 12_000)), Series("dsmc", "molecules", (12_000, 48_000)))
 """Runs worth comparing: molecules diffuse equally in both engines; with more molecules the shares scatter less."""
 FRAMES = 120
 SKIP = 2

@@ -34,7 +34,7 @@ SETTLE = 400
 BLOCKS = 5
 """Number of blocks for the errors of the speeds: each is longer than the time in which discs share their energy."""
 
-ladder = (
+series = (
     Series("exact", "duration", (15, 60, 240)),
     Series("stepped", "delta", (0.4, 0.1), {"duration": 60}),
     Series("stepped:applet-discs", "delta", (0.4, 0.1), {"duration": 60}),

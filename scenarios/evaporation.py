@@ -55,7 +55,7 @@ FEW = 100
 """Number of molecules that come or go below which the errors are those of random events, and not from blocks."""
 
 
-ladder = (Series("exact", "duration", (10, 20)), Series("dsmc", "duration", (10, 20, 40)))
+series = (Series("exact", "duration", (10, 20)), Series("dsmc", "duration", (10, 20, 40)))
 """Runs worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
 
 
@@ -90,7 +90,7 @@ class Settings(SceneSettings):
         filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
         if filled > 0.1:
             widest = self.diameter * (0.1 / filled) ** (1.0 / 3.0)
-            problem = f"is too wide for {self.pressure:g} hPa: air must be a gas for its vapour to saturate at e_s"
+            problem = f"makes the gas at {self.pressure:g} hPa too dense for vapour to saturate at e_s"
             raise self.refusal("diameter", problem, at_most=math.floor(100.0 * widest) / 100.0)
 
 

@@ -41,7 +41,7 @@ minutes = 15
 FRAMES = 40
 _THEORY = "theory is the adiabat, plus the warming by the finite speed, minus the cooling by the volume of the spheres"
 _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parcel_temperature"), -1.0)
-ladder = (
+series = (
     Series("exact", "ascent", (50, 100, 200, 400, 800, 1600), order=_SLOW),
     Series("exact", "molecules", (250, 1000, 4000), {"ascent": 400}),
     Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2, 0.1), {"ascent": 400}, {"temperature_at_700_hpa": 1.0}),

@@ -41,7 +41,7 @@ FRAMES = 60
 SAMPLES = 10
 
 
-ladder = (
+series = (
     Series("exact", "ascent", (100, 400)),
     Series("exact", "molecules", (3000, 10_000), {"ascent": 400}),
     Series("dsmc", "ascent", (100, 200, 400, 1000, 3000)),

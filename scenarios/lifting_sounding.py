@@ -40,7 +40,7 @@ SAMPLES = 8
 BUILT_IN = "weisman-klemp"
 
 
-ladder = (
+series = (
     Series("exact", "ascent", (200, 400)),
     Series("exact", "molecules", (5000,), {"ascent": 400}),
     Series("dsmc", "ascent", (200, 400, 1400)),

@@ -41,7 +41,7 @@ SAMPLES = 8
 BLOCK = 6
 
 
-ladder = (Series("exact", "travel", (150, 300)), Series("dsmc", "travel", (150, 300, 600, 1200)))
+series = (Series("exact", "travel", (150, 300)), Series("dsmc", "travel", (150, 300, 600, 1200)))
 """Runs worth comparing: a fast journey ends too warm, and few molecules scatter."""
 
 

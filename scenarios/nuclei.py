@@ -58,7 +58,7 @@ RADII = np.linspace(0.3e-9, 2.5e-9, 221)
 HIGHEST = 4.0
 """Relative humidity up to which these curves are drawn."""
 
-ladder = (Series("exact", "molecules", (1500, 3000, 6000)),)
+series = (Series("exact", "molecules", (1500, 3000, 6000)),)
 """Runs worth comparing: the more molecules there are, the less the humidity scatters."""
 
 
@@ -86,7 +86,7 @@ class Settings(SceneSettings):
         widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
         gap = growth.box.side * growth.box.scale.length / _side(self)
         if 2.0 * self.drop_size * widest > gap:
-            problem = f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away"
+            problem = f"would let a drop that takes all the vapour touch the next, {1e9 * gap:.3g} nm away"
             most = math.floor(50.0 * gap / widest) / 100.0
             raise self.refusal("drop_size", problem, ", or fewer drops", at_most=most)
 

@@ -39,7 +39,7 @@ WARMEST = 500.0
 """Temperature to which the walls can be warmed while the box runs [degC]."""
 
 _LATE = {"collision_rate": 2.0}
-ladder = (
+series = (
     Series("exact", "duration", (5, 20, 80, 320)),
     Series("stepped", "delta", (0.8, 0.4, 0.2, 0.1, 0.05), {"duration": 20}, _LATE),
     Series("dsmc", "duration", (5, 20, 80, 320)),

@@ -75,7 +75,7 @@ def test_what_is_no_accuracy_is_refused_with_what_to_type():
         ("-1K", "accuracy = -1K is neither", "such as 0.5K"),
         ("0K", "is not an error above 0 and of at most 1000 K", "such as 0.5K"),
         ("101%", "of at most 100 %", "or 2%."),
-        ("25degC", "is a temperature and not the error of one", 'give accuracy="25K".'),
+        ("25degC", "is a temperature, not an error", 'give accuracy="25K".'),
         ("0,5K", "is written with a comma", 'give accuracy="0.5K".'),
         (0.5, "accuracy = 0.5 is not a text", 'give accuracy="lecture"'),
     ]
@@ -181,7 +181,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
 
 def test_every_way_of_the_shipped_table_can_be_run_and_every_scene_has_its_default_run():
     held = accuracy.load()
-    declared = {name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")}
+    declared = {name for name in scenarios.names() if hasattr(scenarios.load(name), "series")}
     assert declared == set(scenarios.names()) >= set(held)
     not_measured = {"attraction", "convection", "diffusion", "nuclei"}
     assert declared - set(held) <= not_measured, "all others are measured"

@@ -66,7 +66,7 @@ WORDS = {
     r"wish(es)?": "target",
     r"glance": "a quick test",
     r"lanes?": "numbers tested at once",
-    r"rungs?": "setting that was measured",
+    r"ladders?|rungs?": "setting that was measured",
     r"furniture|outlook|pulse|pens?": "the name of the thing itself",
     r"random baths?|(?<!heat )baths? of": "thermostat, heat bath",
     r"within error\?": "agrees?",

@@ -69,7 +69,7 @@ def test_bias_and_noise_are_told_apart():
 
 
 def test_a_measurement_has_errors_beside_costs(found):
-    assert found.sizes["rung"] == 3
+    assert found.sizes["configuration"] == 3
     assert (found.members.values >= 1).all()
     assert (found.engine_seconds.values > 0.0).all()
     assert found.cost.values[1] == 1.0, "the reference is the dearest of the first exact series"
@@ -90,7 +90,7 @@ def stored(scene):
 @pytest.mark.parametrize("scene", ["atmosphere", "evaporation", "lifting-dry", "temperature-large"])
 def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
     best, enough = recommended(stored(scene))
-    way = stored(scene).isel(rung=best)
+    way = stored(scene).isel(configuration=best)
     chosen = choose(scene, "lecture")
     assert enough == chosen.met
     assert str(way.engine.item()) == chosen.way.engine
@@ -134,7 +134,7 @@ def test_the_budget_is_kept_and_what_fits_is_run():
 
 def test_the_command_writes_a_file_and_says_what_is_in_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(scenarios.load("lifting-dry"), "ladder", QUICK, raising=False)
+    monkeypatch.setattr(scenarios.load("lifting-dry"), "series", QUICK, raising=False)
     monkeypatch.setattr(timed_run, "MOST_RUNS", 2)
     done = CliRunner().invoke(app, ["tradeoff", "lifting-dry", "--budget", "60s", "--json"])
     assert done.exit_code == 0, done.output

@@ -121,7 +121,7 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, to: Result) -
     expected = expectation_lines(prepared.expectation, outcome.headlines, prepared.unusual_engine, width())
     lines = outcome_lines(outcome, path, width(), expected)
     if prepared.save_molecules is None and not {"molecule_position", "disc_position"} & set(outcome.dataset):
-        lines.insert(-2, "molecules: not kept, for they take more than 10 MB; --save-molecules keeps them for view")
+        lines.insert(-2, "molecules: not kept, because they take more than 10 MB; --save-molecules keeps them for view")
     to.say(path, record, lines)
 
 

@@ -84,7 +84,7 @@ def sweep(
         with prints_to_stderr(), progress(grid.scene, quiet=to.quiet) as show:
             found = run(grid, path, jobs=jobs, scheduler=scheduler, force=to.force, progress=show, command=typed(ctx))
     except KeyboardInterrupt:
-        tell(f"{saved()}: type the same again to go on")
+        tell(f"{saved()}: type the same command again to go on")
         raise
     _say(grid, found, path, to)
 

@@ -118,7 +118,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             tell("stopped")
             raise typer.Exit(getattr(error, "exit_code", INTERRUPTED)) from error
         except MemoryError as error:
-            tell("error: This computer has not enough memory for it: give fewer molecules.")
+            tell("error: This computer has not enough memory for this: give fewer molecules.")
             raise typer.Exit(1) from error
         except Exception as error:
             from atmosbox import scenarios

@@ -57,8 +57,8 @@ def tradeoff(
         found = measure(scene, settings=assignments(values or ()), progress=show, note=note, **how)
     records = rows(found)
     best = recommended(found)
-    way = None if best is None else str(found.rung.values[best[0]])
-    about = {"scene": scene, "file": str(path), "recommended": way, "rungs": records}
+    way = None if best is None else str(found.configuration.values[best[0]])
+    about = {"scene": scene, "file": str(path), "recommended": way, "configurations": records}
     to.say(path, about, [*lines(found, width()), "", f"file: {path}", f"next: {next_command('plot', path)}"])
     if found.attrs["atmosbox_status"] == "interrupted":
         tell("stopped: what was measured is kept")
@@ -68,7 +68,7 @@ def tradeoff(
 def rows(found: xr.Dataset) -> list[dict[str, object]]:
     """Return the measurement as records for JSON, one for each engine with its settings."""
     made = []
-    for k, label in enumerate(found.rung.values):
+    for k, label in enumerate(found.configuration.values):
         record: dict[str, object] = {"run": str(label), "engine": str(found.engine.values[k])}
         record["settings"] = str(found.settings.values[k])
         record |= {name: found[name].values[k].item() for name in _COLUMNS}
@@ -90,7 +90,7 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
     header += [f"{found.label.sel(quantity=name).item()} [{_unit(found, name)}]" for name in chosen]
     body: list[list[str]] = []
     missing: dict[str, list[str]] = {}
-    for k, label in enumerate(found.rung.values):
+    for k, label in enumerate(found.configuration.values):
         if why := str(found.left_out.values[k]):
             missing.setdefault(why, []).append(str(label))
         if not (members := int(found.members.values[k])):
@@ -106,7 +106,7 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
     words = ["bias ± its standard error (noise of a single run); cost: 1 is the reference"]
     if (best := recommended(found)) is not None:
         head = f"recommended, the cheapest within {WANTED.limits}" if best[1] else "the most accurate"
-        words += [f"{head}: {found.rung.values[best[0]]}, {number(found.engine_seconds.values[best[0]], 2)} s"]
+        words += [f"{head}: {found.configuration.values[best[0]]}, {number(found.engine_seconds.values[best[0]], 2)} s"]
     words += [f"{why}: {'; '.join(labels)}" for why, labels in missing.items()]
     return [*table(header, body, columns), "", *(line for said in words for line in wrapped(said, columns))]
 

@@ -71,14 +71,14 @@ class Command(TyperCommand):
         parts = parts if extra[0] not in names and parts[0].partition("=")[0] in names else [*extra]
         whole = "".join(parts) if any("=" in part for part in parts) else "=".join([*parts, "VALUE"][:2])
         if whole.partition("=")[0] in names:
-            return f"{' '.join(parts)} is not a setting and its value in one word: write {shlex.quote(whole)}."
+            return f"{' '.join(parts)} is not one word of the form NAME=VALUE: write {shlex.quote(whole)}."
         if not self._sets and _ASSIGNMENT.fullmatch(extra[0]):
             return f"atmosbox {self.name} takes no settings: leave {extra[0]} out, or give it to atmosbox run."
         if extra[0].endswith(".nc"):
             pair = shlex.join(["atmosbox", "compare", *(word for word in words if word.endswith(".nc"))])
             return f"atmosbox {self.name} takes one file, and is given {1 + len(extra)}: give one, or type {pair}."
         return (
-            f"{shlex.join(extra)} is too much for atmosbox {self.name}: leave it out; "
+            f"{shlex.join(extra)} has no meaning for atmosbox {self.name}: leave it out; "
             f"atmosbox {self.name} --help shows what may be given."
         )
 

@@ -136,8 +136,8 @@ class Checkpoint:
         self.save(dataset)
         if self.path.exists() and not self._force:
             raise FileError(
-                f"{self.path} was made by another program during the run, which is whole in {self.part}: "
-                "move the one or the other to a new name."
+                f"Another program has made {self.path} during the run; the complete run is in {self.part}: "
+                "rename one of the two."
             )
         try:
             os.replace(self.part, self.path)

@@ -22,7 +22,7 @@ _LABELS = {"wall": ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high"), "a
 
 
 def headline_variables(headline: Any) -> dict[str, xr.Variable]:
-    """Return the variables that hold one headline: its value, standard error, closed-form answer and tolerance.
+    """Return the variables that hold one headline: its value, standard error, answer of theory and tolerance.
 
     A value of None becomes NaN; other parts that are None get no variable. Attributes keep the unit in which a table
     shows them and, if the headline has them, how far it may be from theory, whether it is that near, its possible

@@ -99,7 +99,7 @@ def molecules(dataset: xr.Dataset, *otherwise: Given | str) -> Molecules:
     atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("./mine.py", save_molecules=True).
     """
     source = dataset.encoding.get("source") or "The run"
-    if "rung" in dataset.dims:
+    if "configuration" in dataset.dims:
         draw = Command("plot", (str(source),))
         raise FileError(f"{source} holds a comparison of engines and no molecules", draw, " to draw it")
     discs = "disc_position" in dataset

@@ -123,7 +123,8 @@ def read(path: AnyPath) -> xr.Dataset:
                 problem = f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}"
                 raise FileError(f"{problem}: type pip install --upgrade atmosbox.")
             check_valid(file, source)
-        return xr.load_dataset(source, engine="netcdf4", decode_times=False, drop_variables=[STATE])
+        found = xr.load_dataset(source, engine="netcdf4", decode_times=False, drop_variables=[STATE])
+        return found.rename(rung="configuration") if "rung" in found.dims else found  # the name in earlier versions
     except FileError:
         raise
     except (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError) as error:

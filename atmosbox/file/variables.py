@@ -5,7 +5,7 @@ that is not finite means that the run is broken. Any other variable may be NaN w
 example in a layer that no molecule visited.
 
 A name that ends in ``_se``, ``_count``, ``_theory`` or ``_tolerance`` needs no entry of its own: `variable` derives it
-from its parent, as the standard error, the number of samples, the closed-form answer or the allowed deviation.
+from its parent, as the standard error, the number of samples, the answer of theory or the known error of the model.
 
 Only one variable has a given CF standard name, so that a program that looks for ``air_temperature`` by that name
 finds one variable: the value measured in the whole box. Variables of a part of the box, of its environment or of
@@ -136,21 +136,21 @@ SUFFIXES = ("_se", "_count", "_theory", "_tolerance")
 
 
 def derived(parent: Variable, suffix: str) -> Variable:
-    """Return the declaration of a variable's standard error, number of samples, closed-form answer or tolerance.
+    """Return the declaration of a variable's standard error, number of samples, answer of theory or tolerance.
 
     Examples
     --------
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure of the air on the walls")
     >>> derived(pressure, "_theory").long_name
-    'closed-form answer for the pressure of the air on the walls'
+    'answer of theory for the pressure of the air on the walls'
     """
     name, words = parent.name + suffix, parent.long_name
     plain = replace(parent, name=name, cell_methods=None, ledger=False, comment=None, dtype="f8", coordinate=False)
     if suffix == "_theory":
-        return replace(plain, long_name=f"closed-form answer for the {words}", standard_name=None)
+        return replace(plain, long_name=f"answer of theory for the {words}", standard_name=None)
     plain = replace(plain, positive=None, difference=True)
     if suffix == "_tolerance":
-        return replace(plain, long_name=f"allowed deviation from theory of the {words}", standard_name=None)
+        return replace(plain, long_name=f"known error of the model for the {words}", standard_name=None)
     if suffix == "_count":
         words = f"number of samples of the {words}"
         return replace(plain, long_name=words, standard_name="number_of_observations", units="1")
@@ -163,7 +163,7 @@ _TABLE = """
 elapsed_time | s | time: ledger | time since the start of the run
 height | m | height: ledger axis=Z positive=up standard | height of the middle of the layer
 speed | m s-1 | speed: ledger | speed of a molecule, middle of the bin
-energy | J | energy: ledger | energy of a molecule of water above that of one at rest in the liquid, middle of the bin
+energy | J | energy: ledger | energy of a water molecule, counted from one at rest in the liquid, middle of the bin
 distance | m | distance: ledger | distance from the left wall, middle of the bin
 radius | m | radius: ledger | radius of a drop
 mode | 1 | mode: ledger | number of half waves across the box
@@ -176,10 +176,9 @@ air_pressure | Pa | time: mean standard | pressure of the air on the walls
 mean_molecular_speed | m s-1 | time: mean | mean speed of the molecules
 kinetic_energy | J | time: point ledger | kinetic energy of the molecules
 rotational_energy | J | time: point ledger | rotational energy of the molecules
-potential_energy | J | time: point ledger | potential energy of the molecules, in gravity and by attraction
-numerical_heat | J | time: point ledger | energy that the scheme of an approximate engine has made by itself
-ledger_residual | 1 | time: point ledger | residual of the energy budget, as a share of the energy in the box or \
-exchanged
+potential_energy | J | time: point ledger | potential energy of the molecules, from gravity and attraction
+numerical_heat | J | time: point ledger | energy added by the error of an approximate engine
+ledger_residual | 1 | time: point ledger | residual of the energy budget, as a share of the largest energy in it
 collision_count | 1 | time: point sum dtype=i8 | number of collisions between molecules
 wall_hit_count | 1 | time: point sum dtype=i8 | number of hits of molecules on walls
 work_by_piston | J | time: point sum ledger | work done on the molecules by the piston
@@ -188,22 +187,22 @@ gravity | m s-2 | time: point | acceleration of gravity, if it was changed durin
 pool_open_share | 1 | time: point | share of the pool that is open, if it was changed during the run
 heat_from_wall | J | time wall: point sum ledger | heat given to the molecules by the wall
 wall_pressure | Pa | time wall: mean | pressure of the air on the wall
-air_temperature_noise | K | time: difference | expected scatter of a thermometer of so few molecules
+air_temperature_noise | K | time: difference | expected scatter of the temperature of so few molecules
 wall_temperature | K | time wall: point | temperature of the wall
 # Molecules that attract each other
 largest_drop_molecule_count | 1 | time: point dtype=i8 | number of molecules in the largest drop
-well_count | 1 | time: point dtype=i8 | number of pairs of molecules that attract each other
-attraction_energy | J | time: point ledger | potential energy of all pairs that attract each other
+well_count | 1 | time: point dtype=i8 | number of pairs of molecules near enough to attract each other
+attraction_energy | J | time: point ledger | potential energy of all molecules from attraction
 molecular_energy | J | time: point ledger | kinetic and potential energy of all molecules
 heat_from_bath | J | time: point sum ledger | heat given to the molecules by the thermostat
 work_by_attraction | J | time: point sum ledger | energy given to the molecules by changes of the attraction
-virial_pressure | Pa | time: mean | pressure by the motion of molecules and the forces between them
-normal_pressure | Pa | time: mean | pressure across the surface of the liquid
+virial_pressure | Pa | time: mean | pressure from the motion of molecules and the forces between them
+normal_pressure | Pa | time: mean | pressure perpendicular to the surface of the liquid
 surface_tension | N m-1 | time: mean | surface tension of the liquid
 liquid_number_density | m-3 | time: mean | number of molecules in a cubic metre of liquid
 vapor_number_density | m-3 | time: mean | number of molecules in a cubic metre of vapour
-liquid_well_energy | J | time: mean | energy of attraction of a molecule of the liquid
-vapor_well_energy | J | time: mean | energy of attraction of a molecule of the vapour
+liquid_well_energy | J | time: mean | energy of attraction per molecule in the liquid
+vapor_well_energy | J | time: mean | energy of attraction per molecule in the vapour
 # A parcel that is lifted
 parcel_temperature | K | time: point | temperature of the parcel
 parcel_potential_temperature | K | time: point standard=air_potential_temperature | potential \
@@ -218,8 +217,8 @@ the weight of its droplets
 parcel_density_temperature | K | time | temperature of dry air as dense as the parcel with its droplets
 parcel_buoyancy | m s-2 | time | buoyancy of the parcel, with the weight of its droplets
 environment_pressure | Pa | time | pressure of the environment
-adiabat_temperature | K | time | temperature of the adiabat at this pressure
-dry_air_adiabat_temperature | K | time | temperature of the adiabat of dry air at this pressure
+adiabat_temperature | K | time | temperature of the adiabat at the pressure of the parcel
+dry_air_adiabat_temperature | K | time | temperature of the adiabat of dry air at the pressure of the parcel
 parcel_volume | m3 | time: point ledger | volume of the parcel
 piston_height | m | time: point ledger | distance of the piston from the floor of the box
 piston_velocity | m s-1 | time: point ledger | velocity of the piston, positive outwards
@@ -229,7 +228,7 @@ saturation_vapor_pressure | Pa | time: mean | saturation vapour pressure at the 
 relative_humidity | 1 | time: mean standard | relative humidity
 humidity_mixing_ratio | kg kg-1 | time: mean standard | mass of vapour per mass of dry air
 cloud_liquid_water_mixing_ratio | kg kg-1 | time: mean standard | mass of liquid water per mass of dry air
-largest_haze_mixing_ratio | kg kg-1 | time: mean | mass of liquid water per mass of dry air, above which it is a cloud
+largest_haze_mixing_ratio | kg kg-1 | time: mean | largest mass of liquid water in haze per mass of dry air
 rain_mixing_ratio | kg kg-1 | time: mean | mass of water that has rained out so far per mass of dry air
 liquid_temperature | K | time: mean | temperature of the liquid water
 drop_area | m2 | time: mean | total area at which molecules hit drops
@@ -243,12 +242,12 @@ largest_drop_radius | m | time: point | radius of the largest drop
 # Drops with and without salt
 salted_drop_radius | m | time: point | mean radius of the drops with salt in them
 pure_drop_radius | m | time: point | mean radius of the drops of pure water
-saturation_ratio | 1 | time: mean | vapour pressure over that of saturation at the drops' temperature
+saturation_ratio | 1 | time: mean | vapour pressure divided by that of saturation at the drops' temperature
 drop_molecule_count | 1 | time drop: point dtype=i8 | number of molecules of water in the drop
 salted_drop_humidity | 1 | radius | relative humidity over a drop with salt in it, by the law of Koehler
 pure_drop_humidity | 1 | radius | relative humidity over a drop of pure water, by the law of Kelvin
 condensed_energy | J | time: point ledger | energy of liquid and rain, and the binding energy of the vapour
-gas_temperature | K | time: mean | temperature of air and vapour by all their energy, rotation included
+gas_temperature | K | time: mean | temperature of air and vapour from their energy, rotation included
 liquid_saturation_vapor_pressure | Pa | time: mean | saturation vapour pressure at the temperature of the liquid
 # Molecules that leave the liquid and those that stay, by energy
 leaving_energy_probability_density | J-1 | energy: mean | share of the molecules that evaporate per unit of energy
@@ -264,16 +263,16 @@ layer_temperature_standard | K | height: mean | temperature of the standard atmo
 # Air that turns over
 cell_temperature | K | time distance height: mean | temperature of the air in a cell
 cell_number_density | m-3 | time distance height: mean | number of molecules in a cubic metre of a cell
-cell_pressure | Pa | time distance height: mean | pressure of the air in a cell, by density, temperature and \
+cell_pressure | Pa | time distance height: mean | pressure of the air in a cell, from density, temperature and \
 equation of state
-horizontal_wind | m s-1 | time distance height: mean | wind away from the left wall
+horizontal_wind | m s-1 | time distance height: mean | wind from left to right
 upward_wind | m s-1 | time distance height: mean standard=upward_air_velocity | upward wind
-wind_speed | m s-1 | time: mean | root mean square of the wind minus its thermal noise; negative where noise is larger
-roll_speed | m s-1 | time: mean | root mean square of the amplitudes of all rolls minus their noise
+wind_speed | m s-1 | time: mean | root mean square of the wind without thermal noise; negative where noise is larger
+roll_speed | m s-1 | time: mean | root of the sum of the squared amplitudes of all rolls, without noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
 roll_amplitude | m s-1 | time mode: mean | amplitude of the upward wind of rolls
-tracer_share_aloft | 1 | time: point | share of the molecules from the floor that is in the upper half
-layer_wind | m s-1 | height: mean | wind away from the left wall, in the middle half of the width
+tracer_share_aloft | 1 | time: point | share of the molecules tagged near the floor that are in the upper half
+layer_wind | m s-1 | height: mean | wind from left to right, in the middle half of the width
 layer_temperature_conduction | K | height: mean | temperature of air at rest that conducts heat
 layer_temperature_adiabatic | K | height: mean | temperature of the adiabat through the middle of the height
 # Speeds, bin by bin
@@ -286,14 +285,15 @@ left_gas_share_middle | 1 | distance: mean | share of the gas from the left, aft
 left_gas_share_late | 1 | distance: mean | share of the gas from the left, after twice the mixing time
 gas | | molecule: dtype=i1 flags=left,right | which of two gases the molecule belongs to
 # Discs that collide in a plane
-kinetic_energy_light | J | time: point ledger | mean kinetic energy of a disc of the light half
-kinetic_energy_heavy | J | time: point ledger | mean kinetic energy of a disc of the heavy half
-running_energy_light | J | time: point ledger | mean kinetic energy of a light disc since the start
-running_energy_heavy | J | time: point ledger | mean kinetic energy of a heavy disc since the start
-energy_change | 1 | time: point ledger | change of the kinetic energy since the start, as a share of it
-momentum_residual | 1 | time: point | missing momentum, neither in the discs nor taken by walls, as a share
+kinetic_energy_light | J | time: point ledger | mean kinetic energy of a disc of the lighter half
+kinetic_energy_heavy | J | time: point ledger | mean kinetic energy of a disc of the heavier half
+running_energy_light | J | time: point ledger | kinetic energy of a disc of the lighter half, mean since the start
+running_energy_heavy | J | time: point ledger | kinetic energy of a disc of the heavier half, mean since the start
+energy_change | 1 | time: point ledger | relative change of the kinetic energy since the start, apart from heat
+momentum_residual | 1 | time: point | residual of the momentum budget of discs and walls, as a share of the \
+largest momentum possible
 momentum | kg m s-1 | time axis: point ledger | total momentum of the discs
-box_length | m | axis: ledger | length of the box
+box_length | m | axis: ledger | length of the box along the axis
 disc_position | m | time molecule axis: point ledger | position of the middle of the disc
 disc_velocity | m s-1 | time molecule axis: point ledger | velocity of the disc
 disc_mass | kg | molecule: ledger | mass of the disc
@@ -302,12 +302,12 @@ disc_diameter | m | molecule: ledger | diameter of the disc
 molecule_position | m | time molecule axis: point dtype=f4 | position of the molecule
 molecule_velocity | m s-1 | time molecule axis: point dtype=f4 | velocity of the molecule
 molecule_speed | m s-1 | time molecule: point dtype=f4 | speed of the molecule
-molecule_neighbour_count | 1 | time molecule: point dtype=i1 | number of molecules that attract the molecule
+molecule_neighbour_count | 1 | time molecule: point dtype=i1 | number of molecules near enough to attract the molecule
 species | | molecule: dtype=i1 flags=dry_air,water | species of the molecule
 molecule_mass | kg | molecule: ledger | mass of the molecule
 molecule_diameter | m | molecule: ledger | diameter with which the molecule collides
 # The box around the molecules, and the drops in it; a drop that has merged into another has no position
-box_side | m | time axis: point ledger | length of the box at this time
+box_side | m | time axis: point ledger | length of the box along the axis at this time
 wall_law | | wall: dtype=i1 flags=specular,periodic,heat_bath,piston,pool | what the wall does to a molecule \
 that hits it
 drop_position | m | time drop axis: point | position of the middle of the drop

@@ -55,7 +55,7 @@ def _results(dataset: xr.Dataset) -> list[str]:
     from atmosbox.simulation.verification import headlines_of
     from atmosbox.text.report import headline_lines, ledger_line
 
-    if "atmosbox_headlines" not in dataset.attrs or {"member", "rung"} & set(dataset.dims):
+    if "atmosbox_headlines" not in dataset.attrs or {"member", "configuration"} & set(dataset.dims):
         return []
     try:
         made, headlines = parameters(dataset), headlines_of(dataset)

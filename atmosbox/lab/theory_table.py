@@ -69,7 +69,7 @@ def short_run(prepared: Prepared) -> xr.Dataset:
         raise SettingError(
             "scene",
             prepared.scene,
-            "crowds so many molecules together that the page runs out of room for them",
+            "has so many molecules in one place that the memory of the page is too small for them",
             "give it fewer molecules, begin it where it comes to rest, as atmosphere with ",
             Setting("start", "equilibrium"),
             ", or ",

@@ -105,6 +105,6 @@ def module_bytes(name: str, scene: str) -> bytes:
             raise EngineError(
                 "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
             )
-        problem = f"The settings of {scene} need kernels that no WebAssembly module of this version has ({name})"
-        raise EngineError(problem, "leave them as they are, or ", *elsewhere(scene))
+        problem = f"The page has no WebAssembly module for the box of {scene} with these settings ({name})"
+        raise EngineError(problem, "take other settings, or ", *elsewhere(scene))
     return path.read_bytes()

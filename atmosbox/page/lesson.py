@@ -81,7 +81,7 @@ def lesson_of(module: ModuleType) -> Lesson:
     try:
         told = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise FileError(f"What a class may try cannot be read from {path}: {error.strerror}.") from error
+        raise FileError(f"{path} cannot be read: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
     unknown = sorted(set(told) - {"story", *_KNOWN})

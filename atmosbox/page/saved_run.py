@@ -45,11 +45,11 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
     units = {str(run["elapsed_time"].attrs.get("units", "ns")) for run in runs}
     if len(units) > 1:
         raise FileError(
-            f"The runs count their time in {' and '.join(sorted(units))}, and cannot share a clock: view one by one."
+            f"The times of the runs are in {' and '.join(sorted(units))}, so they cannot share a clock: view one run."
         )
     counted = [seen.neighbours is not None for seen in every]
     if any(counted) and not all(counted):
-        raise FileError("Colours are neighbours in one run and speeds in the other: view one by one.")
+        raise FileError("Colours show neighbours in one run and speeds in the other: view one run.")
     fastest = NEIGHBOURS if all(counted) else max(_fastest(seen.speed) for seen in every)
     return [
         _page(run, seen, heading, fastest, len(runs)) for run, seen, heading in zip(runs, every, headings, strict=True)

@@ -87,7 +87,7 @@ def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False) -> Figure:
     """Return the figure of a run, with its box if ``with_box`` is true, or that of a measured trade or a sweep."""
     if with_box:
         return figure_with_box(dataset, theme)
-    if "rung" in dataset.dims:
+    if "configuration" in dataset.dims:
         return tradeoff_figure.figure(dataset, theme)
     return sweep_figure.figure(dataset, theme) if sweep_figure.is_sweep(dataset) else figure(dataset, theme)
 

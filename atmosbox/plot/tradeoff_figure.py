@@ -137,7 +137,7 @@ def _telling(dataset: xr.Dataset) -> int:
 
     Numbers come before curves, and then quantities with a law of bias before those without.
     """
-    biased = (np.abs(dataset.bias) > SEEN * dataset.bias_se).sum("rung").values
+    biased = (np.abs(dataset.bias) > SEEN * dataset.bias_se).sum("configuration").values
     ranks = list(zip(~_are_curves(dataset), _lawful(dataset), biased, strict=True))
     return ranks.index(max(ranks))
 
@@ -148,12 +148,12 @@ def _are_curves(dataset: xr.Dataset) -> NDArray[np.bool_]:
 
 
 def _total(dataset: xr.Dataset) -> NDArray[np.float64]:
-    """Return the expected error of a single run, ``(rung, quantity)`` [K, or a share].
+    """Return the expected error of a single run, ``(configuration, quantity)`` [K, or a share].
 
     It is the root of the sum of squares of bias, standard error of the bias, and noise.
     """
-    square = sum(dataset[name].transpose("rung", "quantity").values ** 2 for name in ("bias", "bias_se", "noise"))
-    return np.sqrt(np.asarray(square, dtype=np.float64))
+    parts = (dataset[name].transpose("configuration", "quantity").values for name in ("bias", "bias_se", "noise"))
+    return np.sqrt(np.asarray(sum(part**2 for part in parts), dtype=np.float64))
 
 
 def limit(unit: str) -> float:

@@ -179,7 +179,7 @@ def _complete(module: ModuleType) -> ModuleType:
     if base is not None and not hasattr(module, "Settings"):
         other = load(base)
         settings = other.Settings.with_defaults(**getattr(module, "defaults", {}))
-        for name in (*REQUIRED, *(["ladder"] if hasattr(other, "ladder") else [])):
+        for name in (*REQUIRED, *(["series"] if hasattr(other, "series") else [])):
             if not hasattr(module, name):
                 setattr(module, name, settings if name == "Settings" else getattr(other, name))
     return module

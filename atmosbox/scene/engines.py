@@ -151,7 +151,7 @@ _ALL = (
     ),
     Engine(
         "dsmc",
-        "equal steps: in each cell partners of collisions are drawn at random; for many in a thin gas",
+        "equal steps: in each cell partners of collisions are drawn at random; for many molecules of a thin gas",
         _dsmc,
         (
             _option("dt", 0.2, "time step in mean free times", 1e-4, 10.0),

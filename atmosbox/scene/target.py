@@ -90,7 +90,7 @@ def parse(text: object) -> Target:
         return SettingError("accuracy", text, problem, *(fix or FIX))
 
     if unit.casefold() in ("degc", "°c", "c", "degf", "°f", "f"):
-        raise refusal("is a temperature and not the error of one", "K")
+        raise refusal("is a temperature, not an error", "K")
     if unit not in ("K", "k", "%"):
         raise refusal(f"has {'an unknown unit' if unit else 'no unit'}", "K", "%")
     if not 0.0 < size <= (100.0 if unit == "%" else 1000.0):

@@ -211,7 +211,7 @@ def choose(
         enough = math.ceil(reached * 10.0**digits) / 10.0**digits  # never less than the best run reaches
         unit = "%" if allowed.absolute else "K"
         raise refused(
-            f"is more than any measured run of {scene} reaches: the best, {best.label}, comes to "
+            f"is less than the error of every measured run of {scene}: the most accurate, {best.label}, has "
             f"{reached:.2g} {unit} at {cost(best.cost)}",
             Option("accuracy", f"{enough:.6g}{unit}"), ", or reference"
         )  # fmt: skip

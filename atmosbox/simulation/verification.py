@@ -133,6 +133,6 @@ def _balance(dataset: xr.Dataset) -> Check:
     terms = {name: dataset[name].values for name in (*STORES, *GIVEN, *_GIVEN_BEFORE) if name in dataset}
     worst = float(np.max(residual(terms))) if dataset.sizes["elapsed_time"] else math.nan
     passed = bool(worst <= LEDGER_LIMIT)
-    what = f"energy minus heat{', what the scheme made' if 'numerical_heat' in terms else ''} and work"
-    said = f"is{'' if passed else ' not'} constant: it changes by {worst:.0e} of it{' at most' if passed else ''}"
+    what = f"energy minus heat{', error of the engine' if 'numerical_heat' in terms else ''} and work"
+    said = f"is{'' if passed else ' not'} constant: it changes by {worst:.0e} of the largest energy"
     return Check("balance", passed, f"{what} {said}")

@@ -190,7 +190,7 @@ def _as_completed(pool: futures.Executor, tasks: Sequence[Task]) -> Generator[Do
     running = {pool.submit(_run, task): task for task in tasks}
     for future in futures.as_completed(running):
         if future.cancelled():
-            raise EngineError("The scheduler was lost: type the same again to go on.")
+            raise EngineError("The connection to the scheduler was lost: type the same command again to go on.")
         error = future.exception()
         if error is None or isinstance(error, FileError | BrokenProcessPool):
             yield future.result()

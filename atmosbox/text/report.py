@@ -68,7 +68,7 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
     expected within: 4 standard errors (chance) plus 0.5 K, because the box is small.
     """
     if not headlines:
-        return wrapped("No mean of this run is compared with theory: it is too short, or a knob was turned.", width)
+        return wrapped("Nothing is compared with theory: the run is too short, or a knob was turned.", width)
     rows = [_row(each) for each in headlines if each.resolved and not each.program]
     header = ["quantity", "measured", "theory", "difference", "expected within", "agrees?"]
     filled = [k for k in range(len(header)) if k < 2 or any(row[k] for row in rows)]
@@ -183,7 +183,7 @@ def outcome_json(outcome: Outcome, prepared: Prepared, path: Path) -> dict[str, 
 
 def outcome_lines(outcome: Outcome, path: Path, width: int, expected: Sequence[str] = ()) -> list[str]:
     """Return a run as text, with the lines about its expected errors."""
-    made = f"the scheme itself has made {100.0 * outcome.made:+.2g} % of the energy of motion"
+    made = f"error of the engine in the energy of motion: {100.0 * outcome.made:+.2g} %"
     return [
         *headline_lines(outcome.headlines, width),
         "",
@@ -223,7 +223,7 @@ def comparison_lines(files: Sequence[str], names: Naming, numbers: Sequence[Comp
     runs = [f"{label}: {file}" for label, file in zip(names.labels, files, strict=True) if label != Path(file).stem]
     made = [*wrapped(head, columns), *(line for run in runs for line in wrapped(run, columns, indent="  ")), ""]
     if not numbers:
-        return [*made, "No number is in both files: each run shows its own with atmosbox check."]
+        return [*made, "The files have no number in common: atmosbox check shows those of each."]
     rows, pair = [], len(files) == 2
     for each in numbers:
         what = each.label + ("" if each.unit in ("", "1") else f" [{each.unit}]")

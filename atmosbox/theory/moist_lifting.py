@@ -86,7 +86,7 @@ def lcl(
     p, t = checked_positive(as_floats(pressure), "pressure"), checked_temperature(as_floats(temperature))
     td = checked_temperature(as_floats(dewpoint), "dewpoint")
     if not np.all(td <= t):
-        raise ValueError("dewpoint must not exceed temperature: supersaturated air is in its cloud already.")
+        raise ValueError("dewpoint must not exceed temperature: supersaturated air has no cloud base.")
     e = _water.saturation(td)
     if not np.all(e < p):
         raise ValueError("dewpoint is so high that water boils at this pressure: there would be no air.")

@@ -93,7 +93,7 @@ def ways_of(series: Sequence[Series], settings: Mapping[str, Any]) -> tuple[Way,
                 own[row.vary] = value
             found.append(Way(str(engines.choose(engine)), {**settings, **own}, place, float(value)))
     if not found:
-        raise SettingError("scene", None, "declares nothing to compare", "give its module a ladder of Series")
+        raise SettingError("scene", None, "declares nothing to compare", "give its module the tuple series, of Series")
     return tuple(found)
 
 

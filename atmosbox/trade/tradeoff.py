@@ -80,7 +80,7 @@ def measure(
     Returns
     -------
     xarray.Dataset
-        Variables along ``rung``, the ways of running, and ``quantity``; their long names describe them.
+        Variables along ``configuration``, an engine and its settings, and ``quantity``; their long names describe them.
 
     Raises
     ------
@@ -97,9 +97,9 @@ def measure(
     atmosbox.errors.SettingError: budget = 0 s is not between 1 s and 1000000 s: give budget="40s".
     """
     module = scenarios.load(scene)
-    series = getattr(module, "ladder", ())
+    series = getattr(module, "series", ())
     if ways is None and not series:
-        raise SettingError("scene", scene, "declares nothing to compare", "give its module a ladder of Series")
+        raise SettingError("scene", scene, "declares nothing to compare", "give its module the tuple series, of Series")
     if not (math.isfinite(budget) and 1.0 <= budget <= 1e6):
         raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", Option("budget", "40s"))
     module.Settings.from_user(settings or {})
@@ -241,7 +241,7 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
         "engine_seconds": (cpu, "processor time that the engine takes in a run", "s"),
         "cost": (cost, "processor time of the engine as a multiple of that in the reference", "1"),
         "members": ([len(done) for done in trials], "number of runs", "1"),
-        "energy_drift": (each(max, "made"), "largest energy that the scheme itself has made, as a share", "1"),
+        "energy_drift": (each(max, "made"), "largest error of the engine in the energy, as a share", "1"),
         "ledger": (each(max, "ledger"), "largest residual of the energy budget", "1"),
         "missed": (missed, "share of the collisions of the reference that are missing", "1"),
         "escaped": (each(max, "escaped"), "most molecules outside the box", "1"),
@@ -253,12 +253,12 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
         "runs": ([json.dumps(done) for done in trials], "the runs so far, as JSON", None),
     }
     data: dict[str, Any] = {
-        name: ("rung", values, {"long_name": text} | ({"units": unit} if unit else {}))
+        name: ("configuration", values, {"long_name": text} | ({"units": unit} if unit else {}))
         for name, (values, text, unit) in along.items()
     }
     texts = "mean error of a run against theory", "standard error of bias", "standard deviation of a single run"
     for name, values, text in zip(("bias", "bias_se", "noise"), parts, texts, strict=True):
-        data[name] = (("rung", "quantity"), values, {"long_name": text})
+        data[name] = (("configuration", "quantity"), values, {"long_name": text})
     theory = "value of theory, in SI units; for a curve the mean of its absolute value"
     of_quantities: dict[str, tuple[Sequence[Any], str]] = {
         "quantity": (names, "what is measured"),
@@ -266,7 +266,8 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
         "unit": ([q.unit for q in about], "unit of bias and noise: K, or 1 for a share of the theory"),
         "theory": ([q.theory for q in about], theory),
     }
-    coords: dict[str, Any] = {"rung": ("rung", [way.label for way in ways], {"long_name": "engine and settings"})}
+    labels = [way.label for way in ways]
+    coords: dict[str, Any] = {"configuration": ("configuration", labels, {"long_name": "engine and settings"})}
     coords |= {name: ("quantity", each, {"long_name": text}) for name, (each, text) in of_quantities.items()}
     return xr.Dataset(data, coords=coords)
 

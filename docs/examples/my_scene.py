@@ -1,7 +1,7 @@
 """A vacuum flask: why so little air carries so little heat.
 
 Between a hot and a cold wall, five millimetres apart, there is so little air that molecules fly across
-without meeting. Each takes heat from the hot wall to the cold one; half as many carry half as much.
+without colliding. Each carries heat from the hot wall to the cold one; half as many carry half as much.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ class Settings(SceneSettings):
 
 
 def answer(settings):
-    """Return the closed form of so thin a gas, and what the engine's units are in SI."""
+    """Return what theory says of so thin a gas, and the units of the engine in SI."""
     si = settings.si
     kT = BOLTZMANN * np.sqrt(si.hot * si.cold)
     scale = Scale(GAP, DRY_AIR.molecule_mass, kT, weight=si.pressure * GAP**3 / kT / settings.molecules)
@@ -35,7 +35,7 @@ def answer(settings):
 
 
 def build(settings, engine):
-    """Return the box: a cube of points, which never meet, between the walls; the engine that was asked for makes it."""
+    """Return the box between the walls: its molecules are points, which never collide."""
     n, scale = settings.molecules, answer(settings)[1]
     rng = RandomNumbers(settings.seed)
     bath = [HeatBath(scale.reduced_temperature(wall)) for wall in (settings.si.hot, settings.si.cold)]
@@ -47,13 +47,13 @@ def build(settings, engine):
 
 
 def theory(dataset, settings):
-    """Return the curve to lay beside the measurement: the air is as warm as the geometric mean."""
+    """Return theory: the temperature of the air is the geometric mean of those of the walls."""
     kT = answer(settings)[0].kT
     return {"air_temperature_theory": np.full(dataset.sizes["elapsed_time"], kT / BOLTZMANN)}
 
 
 def headlines(dataset, settings):
-    """Return the numbers that the run is about: what the hot wall gives and the cold one takes."""
+    """Return the main result: the heat that the hot wall gives and the cold one takes."""
     gave = np.diff(dataset.heat_from_wall.values, axis=0) / np.diff(dataset.elapsed_time.values)[:, None]
     flux = block_average((gave[SETTLE:, 4] - gave[SETTLE:, 5]) / (2.0 * GAP**2))
     numbers = float(flux.mean), float(flux.standard_error), float(answer(settings)[0].heat_flux)

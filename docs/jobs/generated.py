@@ -65,20 +65,20 @@ def variables(found: Findings) -> None:
 ATTRIBUTES = {
     "Conventions": "`CF-1.11`",
     "title": "title of the scene",
-    "institution": "for you to fill in",
+    "institution": "not stated: write yours",
     "source": "atmosbox, its version and its engine",
-    "history": "when, and the command as it was typed; each later step may add a line",
-    "references": "what the engine is built on",
-    "comment": "the model card of the scene: what is modelled, left out and exaggerated",
+    "history": "when, and the command as it was typed",
+    "references": "source of the method of the engine",
+    "comment": "the description of the scene: what is modelled and what is left out; doubts about a sounding",
     "license": "`CC0-1.0`: the numbers are free for any use",
-    "date_created": "when, in UTC; `SOURCE_DATE_EPOCH` sets it, so that a file can be made again byte by byte",
+    "date_created": "when, in UTC; `SOURCE_DATE_EPOCH`, if set, is taken instead",
     "product_version": "version of atmosbox",
     "atmosbox_format": "version of this layout",
     "atmosbox_status": "`complete`, `partial` (the run is under way or was killed) or `interrupted` (by Ctrl-C)",
-    "atmosbox_parameters": "JSON: scene, settings, engine, version, expected errors; `--from FILE` repeats the run",
+    "atmosbox_parameters": "JSON: scene, settings, engine, version, known errors; `--from FILE` repeats the run",
     "atmosbox_turns": "JSON: each turn of a knob in a [replayed run](lab.md#a-link-is-the-run), with its frame",
-    "atmosbox_panels": "JSON: what the figure shows; `atmosbox plot` needs nothing else",
-    "atmosbox_headlines": "JSON: the names of the headline numbers, in order",
+    "atmosbox_panels": "JSON: the graphs of the figure, which `atmosbox plot` draws",
+    "atmosbox_headlines": "JSON: the names of the main results, in order",
 }
 
 

@@ -19,7 +19,7 @@ SCENES = ("lifting-dry", "atmosphere", "temperature-large")
 def measured(scene: str):
     """Return what ``atmosbox tradeoff`` has written for a scene, without engines that atmosbox no longer has."""
     data = read(BENCHMARKS / f"tradeoff-{scene}.nc")
-    return data.isel(rung=[str(each).partition(":")[0] in engines.names() for each in data.engine.values])
+    return data.isel(configuration=[str(each).partition(":")[0] in engines.names() for each in data.engine.values])
 
 
 @job("tradeoff", quick=True)

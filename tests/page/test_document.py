@@ -97,7 +97,7 @@ def test_a_run_that_cannot_be_shown_is_refused_with_what_to_type(run, tmp_path):
         (whole.drop_vars("molecule_position"), "no molecules: type atmosbox.run"),
         (whole.drop_vars("box_side"), "earlier atmosbox and lacks box_side"),
         (whole.isel(elapsed_time=slice(0)), "holds no frame"),
-        (whole.expand_dims(rung=2), "comparison of engines"),
+        (whole.expand_dims(configuration=2), "comparison of engines"),
         (whole.drop_attrs(), "does not say which run it holds"),
     ]:
         with pytest.raises(FileError, match=said):

@@ -121,7 +121,7 @@ def test_molecules_that_leave_have_the_binding_energy_and_the_energies_of_a_flux
         ({"pressure": 42.0}, "makes water boil at 42 hPa.*temperature=.29degC"),
         ({"pressure": 1.0, "temperature": 95.0}, "boil.*temperature=.-23degC"),
         ({"humidity": 600.0, "temperature": 60.0}, "hardly any air is left.*humidity=.4[0-9][0-9]percent"),
-        ({"pressure": 20_000.0, "diameter": 1.0}, r"too wide for 20000 hPa.*diameter=.0\.[0-9]+nm"),
+        ({"pressure": 20_000.0, "diameter": 1.0}, r"20000 hPa too dense for vapour.*diameter=.0\.[0-9]+nm"),
     ],
 )
 def test_what_cannot_be_is_refused_with_what_to_type_instead(settings, words):

@@ -87,7 +87,7 @@ P, Z, T, TD = range(4)
     [
         (P, "without pressure or temperature"),
         (T, "without pressure or temperature"),
-        (TD, "without dewpoint below one"),
+        (TD, "without dewpoint, below a level"),
     ],
 )
 def test_a_level_without_a_value_is_left_out(written, csv_lines, column, remark):

@@ -25,11 +25,11 @@ def test_any_usual_encoding_and_line_end_is_read(written, csv_lines, same_as):
 
 def test_what_is_no_sounding_is_refused_in_a_sentence(written):
     cases = [
-        (b"", "begins no sounding that is known"),
+        (b"", "does not begin a sounding of a known format"),
         (b"\x00\x01\x02\x03" * 9, "is not a text"),
         (b"p,T,Td\n\x01\x02", "is not a text"),
         (b"\xff\xfe\x00\xd8\x00\x00\x00", "is not a text"),
-        (b"\n\n  once upon a time", "line 3: once upon a time begins no sounding that is known"),
+        (b"\n\n  once upon a time", "line 3: once upon a time does not begin a sounding of a known format"),
     ]
     for content, sentence in cases:
         path = written(content)

@@ -205,14 +205,14 @@ def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     >>> refuse_supersaturation(26.0, 25.0)
     Traceback (most recent call last):
     ...
-    atmosbox.errors.SettingError: dewpoint = 26 degC is above the temperature, 25 degC:
-    such air is in its cloud already: give dewpoint="25degC" for saturated air.
+    atmosbox.errors.SettingError: dewpoint = 26 degC is above the temperature, 25 degC,
+    so the air would be supersaturated: give dewpoint="25degC" for saturated air.
     """
     if dewpoint > temperature:
         raise SettingError(
             "dewpoint",
             f"{dewpoint:g} degC",
-            f"is above the temperature, {temperature:g} degC: such air is in its cloud already",
+            f"is above the temperature, {temperature:g} degC, so the air would be supersaturated",
             Setting("dewpoint", f"{temperature:g}degC"),
             " for saturated air",
         )

@@ -160,5 +160,5 @@ def refuse_vapour_alone(settings: Any) -> None:
     if settings.si.humidity > most:
         place = f"{settings.pressure:g} hPa and {settings.temperature:g} degC"
         raise settings.refusal(
-            "humidity", f"is more vapour than there is gas at {place}", at_most=math.floor(100.0 * most)
+            "humidity", f"needs more than the whole pressure at {place}", at_most=math.floor(100.0 * most)
         )

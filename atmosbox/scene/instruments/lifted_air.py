@@ -29,7 +29,7 @@ class Environment:
     height, pressure, temperature
         Functions of the elapsed time [s] that give m, Pa and K.
     adiabat
-        Function of pressure [Pa] that gives the temperature of the closed-form adiabat [K].
+        Function of pressure [Pa] that gives the temperature of the adiabat by theory [K].
     """
 
     height: Callable[[float], float]

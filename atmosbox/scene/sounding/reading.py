@@ -177,8 +177,8 @@ def _parsed(text: Text) -> Table:
             return table
     first, line = next(((i, line) for i, line in enumerate(text.lines) if line.strip()), (0, ""))
     raise SoundingError(
-        f"{text.place(first)}: {shown(line.strip())} begins no sounding that is known: name the columns, as in "
-        "pressure [hPa],temperature [degC],dewpoint [degC]."
+        f"{text.place(first)}: {shown(line.strip())} does not begin a sounding of a known format: name the columns, "
+        "as in pressure [hPa],temperature [degC],dewpoint [degC]."
     )
 
 
@@ -230,9 +230,9 @@ def sounding_of(table: Table) -> Sounding:
             f"{table.file}: no level has pressure, temperature and dewpoint: give a sounding with all three."
         )
     above = np.arange(moist.size) > np.flatnonzero(moist)[-1]
-    keep(moist | above, "without dewpoint below one that has it left out")
+    keep(moist | above, "without dewpoint, below a level that has one, left out")
     same = np.all((rows[:, 1:] == rows[:, :-1]) | np.isnan(rows[:, 1:] + rows[:, :-1]), axis=0)
-    keep(~np.r_[False, same], "given twice taken once")
+    keep(~np.r_[False, same], "given twice, used once")
     pressure, temperature, dewpoint = rows
     dry = np.isnan(dewpoint)
     if dry.any():
