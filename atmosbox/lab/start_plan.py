@@ -14,7 +14,6 @@ from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.start.overlap import bins_of, spheres_of
-from atmosbox.lab.kernels.pairwise import DEPTH
 from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start, can_start
 
 
@@ -67,7 +66,6 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
         parts=np.array([DRAWN.index(part.draws) for part in declared.parts], np.int64),
         numbered=NUMBERED.index(places.numbered),
         scale_height=float(places.scale_height or 0.0),
-        planar=int(planar),
         speed=float(moving.speed) if equal else 0.0,
         twice=(2.0 if planar else 3.0) * float(kT.sum()) if exact else 0.0,
         weight=float(mass.sum()),
@@ -87,9 +85,6 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
         velocity=np.zeros((n, 3)),
         key=np.zeros(3 * n + 1),
         rank=np.zeros(n, np.int64),
-        other=np.zeros(n, np.int64),
-        waiting=np.zeros((DEPTH, 2), np.int64),
-        partial=np.zeros(DEPTH),
         state=np.zeros(1, np.uint64),
     )
 

@@ -2,8 +2,9 @@
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
@@ -14,19 +15,13 @@ from atmosbox.engine.wells.well_events import specialise
 from atmosbox.lab.kernels.readings import ENERGY
 
 
-class Lists(NamedTuple):
+class Lists(namedtuple("Lists", "stride due full_depth strength work")):
     """The sizes of the lists of neighbours, and the depth of the wells.
 
     ``stride : (1,)`` is the present number of words of a list, ``due : (1,)`` what is to be done with the lists;
     ``full_depth : (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over
     the full one; ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
     """
-
-    stride: Any
-    due: Any
-    full_depth: Any
-    strength: Any
-    work: Any
 
 
 @kernel

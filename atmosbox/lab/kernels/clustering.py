@@ -5,8 +5,9 @@ These kernels compute the counts and sums of `atmosbox.scene.instruments.Cluster
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from atmosbox.lab.kernels.picture import picture
 from atmosbox.lab.kernels.readings import TIME, Reading
 
 
-class Crowd(NamedTuple):
+class Crowd(namedtuple("Crowd", "members crowded wells drop size liquid virial gas_law")):
     """The data of the drops.
 
     ``members`` is the number of molecules that attract each other, which come first; ``crowded`` the smallest number of
@@ -31,15 +32,6 @@ class Crowd(NamedTuple):
     of the last frame [energy]; ``gas_law : (2, 4)`` the coefficients of p / n k T - 1 of a gas: rows for the powers 1
     and 2 of its density, columns for the powers 0 to 3 of e^(strength / kT) - 1.
     """
-
-    members: int
-    crowded: int
-    wells: Any
-    drop: Any
-    size: Any
-    liquid: float
-    virial: Any
-    gas_law: Any
 
 
 @kernel

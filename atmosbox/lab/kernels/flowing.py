@@ -2,8 +2,9 @@
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
@@ -12,7 +13,7 @@ from atmosbox.lab.kernels.readings import Reading
 from atmosbox.lab.kernels.sums import Sum, across
 
 
-class Flow(NamedTuple):
+class Flow(namedtuple("Flow", "sums frames high wave column tagged release low near wind fresh lapse dense adiabat")):
     """The data of the wind in the parts of the layers; all arrays are empty in a scene that does not show it.
 
     ``sums : (3, part)`` are number and velocities along x and z of the molecules of each part in this frame, and
@@ -25,21 +26,6 @@ class Flow(NamedTuple):
     (density,)`` is how fast air cools that rises, over gravity [mass], at the densities from 0 to ``dense``, and
     ``adiabat : (layer,)`` the temperature of such air through the middle of the height [energy].
     """
-
-    sums: Any
-    frames: Any
-    high: Any
-    wave: Any
-    column: Any
-    tagged: Any
-    release: int
-    low: float
-    near: float
-    wind: Any
-    fresh: float
-    lapse: Any
-    dense: float
-    adiabat: Any
 
 
 def can_flow(modes: Modes) -> bool:

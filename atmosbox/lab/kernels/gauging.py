@@ -6,8 +6,9 @@ These kernels measure what the instruments of `atmosbox.scene.instruments` measu
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.schedule import interpolate
@@ -17,14 +18,19 @@ from atmosbox.engine.exact.advance import ascent_of
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
 from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.averaging import update
-from atmosbox.lab.kernels.flowing import Flow, can_flow, flowing, write_adiabat
-from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
+from atmosbox.lab.kernels.flowing import can_flow, flowing, write_adiabat
+from atmosbox.lab.kernels.hygrometer import hygrometry
 from atmosbox.lab.kernels.readings import ENERGY, TIME, Reading
-from atmosbox.lab.kernels.sums import Bins, Sum, ceiling, summing
-from atmosbox.lab.kernels.two_gases import Mixture, end_mixing
+from atmosbox.lab.kernels.sums import Sum, ceiling, summing
+from atmosbox.lab.kernels.two_gases import end_mixing
 
 
-class Gauges(NamedTuple):
+class Gauges(
+    namedtuple(
+        "Gauges",
+        "reading means samples before barometer whole parts fast sides speeds layers virial running mixture water flow",
+    )
+):
     """The data of the instruments of a box.
 
     ``reading : (Reading,)`` has the last readings, ``means : (Reading,)`` the sums over the samples of a frame of those
@@ -41,23 +47,6 @@ class Gauges(NamedTuple):
     of frames, the first energy, and the first momentum. ``mixture`` are two gases that mix; ``water`` vapour and
     liquid, 0 in a box without water; ``flow`` is the wind, 0 with kernels that do not measure it.
     """
-
-    reading: Any
-    means: Any
-    samples: Any
-    before: Any
-    barometer: int
-    whole: Bins
-    parts: Bins
-    fast: Bins
-    sides: Bins
-    speeds: Any
-    layers: Any
-    virial: Any
-    running: Any
-    mixture: Mixture
-    water: Hygrometer | int
-    flow: Flow | int
 
 
 @functools.cache

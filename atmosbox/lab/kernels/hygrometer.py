@@ -2,8 +2,9 @@
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.jit import kernel
@@ -24,7 +25,13 @@ from atmosbox.lab.kernels.readings import Reading
 from atmosbox.lab.kernels.sums import Sum, ceiling
 
 
-class Hygrometer(NamedTuple):
+class Hygrometer(
+    namedtuple(
+        "Hygrometer",
+        "before met contact volatility power binding critical moment planned log_pressure adiabat level "
+        "around mass width mean error empty merged",
+    )
+):
     """The data of the instruments for the water of a box.
 
     ``before : (2,)`` are the numbers of molecules that had condensed and evaporated at the end of the last frame;
@@ -46,26 +53,6 @@ class Hygrometer(NamedTuple):
     molecules that left the liquid; the first ``empty`` bins lie below the binding energy, and ``merged`` bins of the
     engine make one bin. The arrays are empty in a scene that does not show them.
     """
-
-    before: Any
-    met: Any
-    contact: Any
-    volatility: float
-    power: float
-    binding: float
-    critical: float
-    moment: Any
-    planned: Any
-    log_pressure: Any
-    adiabat: Any
-    level: Any
-    around: Any
-    mass: float
-    width: Any
-    mean: Any
-    error: Any
-    empty: int
-    merged: int
 
 
 @kernel

@@ -2,8 +2,9 @@
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.jit import kernel
@@ -15,7 +16,12 @@ from atmosbox.lab.kernels.sums import ceiling, is_away
 _FINEST, _FASTEST = 65535, 255
 
 
-class Picture(NamedTuple):
+class Picture(
+    namedtuple(
+        "Picture",
+        "shown length place colour highest state drops many unit water clump spread layers",
+    )
+):
     """The data of a picture.
 
     ``shown : (shown,)`` are the molecules that are drawn; ``length : (3,)`` the present sides of the box [length];
@@ -28,20 +34,6 @@ class Picture(NamedTuple):
     ``spread : (clump, axis)``, the places of the clumps of a mist as shares of the box, and ``clump``, the size of a
     clump of one molecule; ``layers : (2,)``, the values that stand instead of a radius for a pool and for rain.
     """
-
-    shown: Any
-    length: Any
-    place: Any
-    colour: Any
-    highest: float
-    state: Any
-    drops: Any
-    many: Any
-    unit: float
-    water: int
-    clump: float
-    spread: Any
-    layers: Any
 
 
 @functools.cache
