@@ -28,11 +28,10 @@ from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.sums import Bins, Sum
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_box import hygrometer, liquid_picture
-from atmosbox.lab.stage import instrument_of
+from atmosbox.lab.stage import instrument_of, lab_stage, running_panels
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_box import crowd, lists, well_gas
-from atmosbox.page import NEIGHBOURS
 from atmosbox.scene.instruments import MOMENTS, Air, Discs, Flow, Layers, Mixing, Speeds
 from atmosbox.scene.instruments.flow import LOW, modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
@@ -62,7 +61,8 @@ class LabBox(NamedTuple):
     ``layers`` is the average of the profiles by height, one quantity after the other, and ``speeds`` the average of the
     shares of molecules by speed; they are empty in a scene that does not show them. If molecules attract each other,
     ``gas`` and ``layout`` are those of `well_box`, and ``crowd`` holds the data of the drops; otherwise it is 0.
-    ``start`` says how molecules are placed with another seed, if ``seeded``.
+    ``start`` says how molecules are placed with another seed, if ``seeded``. ``stage`` is what the page shows, and
+    ``swift`` a speed that hardly any molecule exceeds, see `lab_stage`.
     """
 
     prepared: Prepared
@@ -78,6 +78,8 @@ class LabBox(NamedTuple):
     crowd: Any
     start: Start | None
     seeded: bool
+    stage: Stage
+    swift: float
 
     @property
     def modes(self) -> Modes:
@@ -101,7 +103,7 @@ class LabBox(NamedTuple):
         return (0, 6) if not self.modes.piston else (0, 4)
 
 
-def refuse(prepared: Prepared, setup: Setup) -> None:
+def _refuse(prepared: Prepared, setup: Setup) -> None:
     """Refuse a box for which there is no module.
 
     Raises
@@ -134,17 +136,8 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
     return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow.shape == parts
 
 
-def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None = None) -> LabBox:
+def lab_box(prepared: Prepared) -> LabBox:
     """Return the box of a scene for a page.
-
-    Parameters
-    ----------
-    prepared
-        The scene.
-    setup
-        Its box, if it has been built.
-    stage
-        What the page shows of the box; without it three molecules are shown, enough to compile.
 
     Raises
     ------
@@ -157,8 +150,9 @@ def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None 
     >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.speeds.size
     58
     """
-    setup = build(prepared) if setup is None else setup
-    refuse(prepared, setup)
+    setup = build(prepared)
+    _refuse(prepared, setup)
+    stage, swift = lab_stage(prepared, setup, running_panels(prepared))
     parcel: Any = setup.parcel
     arrays = parcel.arrays()
     attracts = type(parcel) is AttractingParcelSet
@@ -180,6 +174,8 @@ def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None 
         crowd(setup) if attracts else 0,
         start_of(parcel, layout),
         is_drawn(parcel),
+        stage,
+        swift,
     )
     return _without_molecules(box) if box.seeded else box
 
@@ -330,17 +326,14 @@ def _average(summed: int, number: int, frames: int) -> Average:
     return Average(np.zeros((BLOCKS + 2, summed)), state, np.full(number, np.nan), np.full(number, np.nan))
 
 
-def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:
-    shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
-    highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
-    if isinstance(parcel, AttractingParcelSet):
-        highest = NEIGHBOURS
+def _picture(parcel: Any, scale: Scale, stage: Stage) -> Picture:
+    shown, speed = np.asarray(stage.shown, np.int64), stage.record["speed"]
     return Picture(
         shown,
         np.zeros(3),
         np.zeros((shown.size, 3), np.uint16),
         np.zeros(shown.size, np.uint8),
-        highest,
+        float(speed["high"]) / (1.0 if speed["counted"] else scale.velocity),
         np.zeros(shown.size, np.uint8),
         *liquid_picture(parcel, scale, stage),
     )

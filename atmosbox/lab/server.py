@@ -238,21 +238,16 @@ def ended(server: Server, opened: Callable[[], None]) -> int:
         Function that is called as soon as the page can be opened.
     """
     came: list[int] = []
-    over = threading.Event()
 
     def end(number: int, frame: object) -> None:
         came.append(number)
-        over.set()
+        threading.Thread(target=server.shutdown).start()  # it waits until the server has ended
 
     before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
-    thread = threading.Thread(target=server.serve_forever, name="atmosbox live", daemon=True)
-    thread.start()
     try:
         opened()
-        while not over.wait(0.5):
-            pass
+        server.serve_forever()
     finally:
-        server.shutdown()
         for number, handler in before.items():
             signal.signal(number, handler)
     return came[0]

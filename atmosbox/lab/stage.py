@@ -7,12 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.word import card_of
-from atmosbox.scene.conversion import phrase
 from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.panels import without_headlines
 from atmosbox.theory.constants import DRY_AIR, WATER
@@ -26,22 +25,10 @@ if TYPE_CHECKING:
 COLDER = 0.5
 """Share of the scale of speeds: if the speeds reach less of it, the page takes another scale."""
 
-_FASTEST = 3.0
+_FASTEST, _STEPS = 3.0, 60
 _TIME = "elapsed_time"
 
 Array = NDArray[np.float64]
-
-
-def plain(values: ArrayLike) -> list[float | None]:
-    """Return numbers as JSON can hold them, with seven digits; numbers that are not finite become null.
-
-    Examples
-    --------
-    >>> plain([1.0, math.nan, 1.0 / 3.0])
-    [1.0, None, 0.3333333]
-    """
-    numbers = np.atleast_1d(np.asarray(values, np.float64)).ravel()
-    return [float(f"{x:.7g}") if math.isfinite(x) else None for x in numbers.tolist()]
 
 
 def instrument_of(setup: Setup, kind: type) -> Any:
@@ -73,7 +60,7 @@ def _running(panel: Panel) -> Panel | None:
 def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tuple[Stage, float]:
     """Return what a page shows of a box, and `_swift` of its molecules in m s-1 K-1/2."""
     parcel: Any = setup.parcel
-    scale, module, settings = setup.scale, prepared.module, prepared.settings
+    scale, module = setup.scale, prepared.module
     present = parcel.present
     mass, diameter = np.full((2, present.size), math.nan)
     mass[present] = parcel.mass * scale.mass
@@ -86,20 +73,12 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
     fast = _swift(mass / scale.mass)
     counted = hasattr(parcel, "neighbours")  # colours show neighbours, because speeds do not show drops
     made = stage(
-        scene=prepared.scene,
         title=str(getattr(module, "title", prepared.scene)),
         story=lesson_of(module).story or (module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
-        facts=list(setup.facts.items()),
-        settings=[(p.name, _said(getattr(settings, p.name), p.unit)) for p in settings.describe()],
-        version=__version__,
-        seed=settings.seed,
-        engine=str(prepared.engine),
         box=Box(
             length=tuple(float(side) * scale.length for side in parcel.length),  # type: ignore[arg-type]
             walls=wall_laws(parcel),
-            wall_temperature=tuple(
-                float(each) * scale.temperature if math.isfinite(each) else None for each in parcel.wall_kT()
-            ),
+            wall_temperature=tuple((parcel.wall_kT() * scale.temperature).tolist()),
             planar=parcel.planar,
             gravity=parcel.gravity > 0.0,
         ),
@@ -114,7 +93,10 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         discs=any(panel.kind == "discs" for panel in panels),
         counted=counted,
     )
-    made.record["card"] = card_of(module.__doc__ or "")
+    made.record.update(
+        scene=prepared.scene, seed=prepared.settings.seed, engine=str(prepared.engine), version=__version__,
+        card=card_of(module.__doc__ or ""),
+    )  # fmt: skip
     return made, fast * scale.velocity / math.sqrt(scale.temperature)
 
 
@@ -138,16 +120,6 @@ def _swift(mass: Array) -> float:
     known = mass[np.isfinite(mass)]
     if not known.size:
         return _FASTEST
-    low, high = 1.0 / known.max(), 1.0 / known.min()
-    while high - low > 1e-9 * high:
-        middle = 0.5 * (low + high)
-        rare = np.exp(-0.5 * _FASTEST**2 * middle * known).mean() < math.exp(-0.5 * _FASTEST**2)
-        low, high = (low, middle) if rare else (middle, high)
-    return _FASTEST * math.sqrt(high)
-
-
-def _said(value: object, unit: str) -> str:
-    """Return the value of a setting as text for the caption."""
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    return str(value) if isinstance(value, str) else phrase(value, unit)  # type: ignore[arg-type]
+    inverse = np.geomspace(1.0 / known.max(), 1.0 / known.min(), _STEPS)
+    share = [float(np.exp(-0.5 * _FASTEST**2 * each * known).mean()) for each in inverse]
+    return _FASTEST * math.sqrt(np.interp(-math.exp(-0.5 * _FASTEST**2), np.negative(share), inverse))

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError, Setting, SettingError
-from atmosbox.lab.stage import instrument_of, plain
+from atmosbox.lab.stage import instrument_of
 from atmosbox.lab.wasm_module import elsewhere
+from atmosbox.page.panel import plain
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, Lift, MoistLift
 from atmosbox.simulation.preparation import Prepared, build
@@ -56,10 +57,8 @@ def short_run(prepared: Prepared) -> xr.Dataset:
     """
     setup = build(prepared)
     parcel: Any = setup.parcel
-    modes, run = (
-        parcel.arrays().modes,
-        Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)}),
-    )
+    modes = parcel.arrays().modes
+    run = Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
     try:
         for _ in range(_FRAMES):
             run.advance(lambda passed: None)
@@ -67,14 +66,10 @@ def short_run(prepared: Prepared) -> xr.Dataset:
         raise EngineError(f"The box of {prepared.scene} cannot begin: {error}.") from error
     if parcel.arrays().modes != modes:
         raise SettingError(
-            "scene",
-            prepared.scene,
-            "crowds so many molecules together that the page runs out of room for them",
+            "scene", prepared.scene, "crowds so many molecules together that the page runs out of room for them",
             "give it fewer molecules, begin it where it comes to rest, as atmosphere with ",
-            Setting("start", "equilibrium"),
-            ", or ",
-            *elsewhere(prepared.scene),
-        )
+            Setting("start", "equilibrium"), ", or ", *elsewhere(prepared.scene)
+        )  # fmt: skip
     found, _ = run.dataset("lab", settle=0, judged=False)
     return found
 
@@ -343,7 +338,7 @@ def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, An
             for axis, values in points.items():
                 panel["planned"][axis] += values
             if panel["kind"] == "atmosphere":
-                line["planned"] = {"moment": [float(f"{each:.5g}") for each in way["moment"]], "y": points["y"]}
+                line["planned"] = {"moment": plain(way["moment"], 5), "y": points["y"]}
             elif panel["across"] and line["role"] in _KNOWN:
                 line["planned"] = points
 
@@ -372,7 +367,6 @@ def _between(table: Mapping[str, Any], name: str, places: Array) -> Array:
     return found
 
 
-def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float]:
+def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float | None]:
     """Return the values of a variable along the ascent, in the unit of its axis."""
-    values = way.get(axis["name"], np.zeros(0)) * axis["factor"] + axis["offset"]
-    return [float(f"{value:.5g}") for value in values]
+    return plain(way.get(axis["name"], np.zeros(0)) * axis["factor"] + axis["offset"], 5)

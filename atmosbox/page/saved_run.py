@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,7 +16,7 @@ from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.file.provenance import parameters
 from atmosbox.page.document import LANGUAGES, THEMES, view_page
 from atmosbox.page.frame import pack
-from atmosbox.page.panel import Meaning, declared, names
+from atmosbox.page.panel import Meaning, declared, names, plain
 from atmosbox.page.stage import NEIGHBOURS, Box, Stage, page_box, share, stage
 from atmosbox.page.word import changed, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
@@ -62,16 +61,11 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
     room = share(seen.position.shape[1], len(seen.time), runs)
     kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
     panels, marks, sentences = _graphs(dataset)
-    made, box = parameters(dataset), page_box(seen)
-    scene, seed = str(made.get("scene", "")), made.get("settings", {}).get("seed")
+    scene, box = str(parameters(dataset).get("scene", "")), page_box(seen)
     told = stage(
-        scene=scene,
         title=str(dataset.attrs.get("title", scene)),
         story=story_of(dataset),
         settings=settings_of(dataset),
-        version=str(dataset.attrs.get("product_version", "")),
-        seed=None if seed is None else int(seed),
-        engine=str(made.get("engine", "exact")),
         box=box,
         mass=seen.mass,
         diameter=seen.diameter,
@@ -157,15 +151,10 @@ def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str,
         if variable.ndim > 1:
             raise FileError(f"The variable {name!r} of the file has {variable.ndim} dimensions, and a graph needs one.")
         figures = _TIME_FIGURES if name == "elapsed_time" else _FIGURES
-        values[name] = [_figure(value, figures) for value in np.atleast_1d(variable.values)]
+        values[name] = plain(variable.values, figures)
         if variable.dims == ("elapsed_time",):
             timed.append(name)
     return {"values": values, "timed": timed}
-
-
-def _figure(value: float, figures: int) -> float | None:
-    """Return a number rounded to some significant digits; None if it is not finite."""
-    return float(f"{value:.{figures}g}") if math.isfinite(value) else None
 
 
 def _meaning(dataset: xr.Dataset, name: str) -> Meaning:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.file.molecules import Molecules
 from atmosbox.page.frame import clumps, encode, layer
-from atmosbox.page.panel import Meaning, declared, names, panel_record
+from atmosbox.page.panel import Meaning, declared, panel_record, plain
 from atmosbox.scene.panels import Panel
 from atmosbox.theory.constants import DRY_AIR
 
@@ -68,7 +68,6 @@ def _even(count: int, most: int) -> Indices:
 
 
 _UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
-_WALLS = 6
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ class Box:
         The law of each wall: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
         x high, y low, y high, z low, z high.
     wall_temperature : (wall,)
-        Temperature of each wall [K]; None for a wall without one.
+        Temperature of each wall [K]; NaN for a wall without one.
     planar : bool
         Whether the molecules do not move along y.
     reach : float, optional
@@ -91,8 +90,8 @@ class Box:
     """
 
     length: tuple[float, float, float]
-    walls: tuple[str, ...] = ("specular",) * _WALLS
-    wall_temperature: tuple[float | None, ...] = (None,) * _WALLS
+    walls: tuple[str, ...] = ("specular",) * 6
+    wall_temperature: tuple[float, ...] = (math.nan,) * 6
     planar: bool = False
     gravity: bool = False
     reach: float | None = None
@@ -110,13 +109,12 @@ class Box:
     def as_record(self) -> dict[str, object]:
         """Return the box as data for the page, its lengths in the unit that is shown."""
         length = [side * self.metre for side in self.length]
-        warm = [t if t is not None and math.isfinite(t) else None for t in self.wall_temperature]
         return {
             "unit": self.unit,
             "length": length,
             "reach": max(length[2], (self.reach or 0.0) * self.metre),
             "walls": list(self.walls),
-            "wall_temperature": warm,
+            "wall_temperature": plain(self.wall_temperature),
             "planar": self.planar,
             "gravity": self.gravity,
         }
@@ -125,7 +123,7 @@ class Box:
 def page_box(seen: Molecules) -> Box:
     """Return the box of a saved run."""
     x, y, z = (float(side) for side in seen.side[0])
-    warm = tuple(float(value) if math.isfinite(value) else None for value in seen.wall_temperature[0])
+    warm = tuple(seen.wall_temperature[0].tolist())
     reach = None if seen.discs else float(seen.side[:, 2].max())
     return Box((x, y, z), seen.walls, warm, seen.planar, seen.gravity, reach)
 
@@ -162,12 +160,11 @@ _PARTICLES = {False: "molecule", True: "disc"}
 class Stage(NamedTuple):
     """The data that the page gets once, in types that JSON can hold, and what is needed to make frames for it.
 
-    ``shown`` are the indices of the molecules that are drawn, ``variables`` those that the graphs need.
+    ``shown`` are the indices of the molecules that are drawn.
     """
 
     record: dict[str, Any]
     shown: Indices
-    variables: tuple[str, ...]
 
     def frame(
         self,
@@ -208,7 +205,6 @@ class Stage(NamedTuple):
 
 def stage(
     *,
-    scene: str,
     title: str,
     box: Box,
     mass: ArrayLike,
@@ -218,11 +214,7 @@ def stage(
     drops: bool = False,
     right: ArrayLike | None = None,
     story: str = "",
-    facts: Iterable[tuple[str, str]] = (),
     settings: Iterable[tuple[str, str]] = (),
-    version: str = "",
-    seed: int | None = None,
-    engine: str = "exact",
     time_unit: str = "ns",
     panels: Sequence[Panel] = (),
     most: int = MOST,
@@ -247,7 +239,7 @@ def stage(
         Whether drops fly among the molecules. Drops are drawn to size, and molecules smaller, so that drops stand out.
     right : (molecule,), optional
         Whether each molecule belongs to the second of two gases, which was on the right at the start.
-    story, facts, settings, version, seed, engine
+    story, settings
         Contents of the caption.
     time_unit : str
         The unit of the times of frames.
@@ -270,7 +262,7 @@ def stage(
 
     >>> box = Box(length=(8.4e3, 8.4e3, 2.5e4), gravity=True)
     >>> column = stage(
-    ...     scene="atmosphere", title="A column", box=box, mass=np.full(9, 4.8e-26), diameter=np.full(9, 50.0),
+    ...     title="A column", box=box, mass=np.full(9, 4.8e-26), diameter=np.full(9, 50.0),
     ...     fastest=900.0, time_unit="s",
     ... )
     >>> column.record["box"]["unit"], column.record["exaggeration"]
@@ -295,21 +287,15 @@ def stage(
             "mass": _mean(heavy[kind == number]),
             "diameter": _mean(wide[kind == number]) * box.metre,
             "drawn": _mean(drawn[kind == number]) * box.metre,
-            "count": int(np.sum(kind == number)),
         }
         for number, name in enumerate(kinds)
     ]
     tell = meaning or (lambda name: declared(name, time_unit))
     graphs = [(number, panel) for number, panel in enumerate(panels) if panel.kind != "discs"]
     record = {
-        "scene": scene,
         "title": title,
         "story": story,
-        "facts": [list(fact) for fact in facts],
-        "settings": [[name.replace("_", " "), text.replace("degC", "°C")] for name, text in settings],
-        "version": version,
-        "seed": seed,
-        "engine": engine,
+        "settings": [list(pair) for pair in settings],
         "particle": _PARTICLES[discs],
         "molecules": len(heavy),
         "molecules_shown": len(shown),
@@ -318,7 +304,7 @@ def stage(
         "box": box.as_record() | {"misty": misty and not drops},
         "species": species,
         "kind": kind[shown].tolist(),
-        "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
+        "size": plain(drawn[shown] * box.metre, 5) if discs and np.ptp(drawn) > 0.0 else None,
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
         "speed": {
@@ -337,9 +323,8 @@ def stage(
             )
             for number, panel in graphs
         ],
-        "variables": {name: {"units": tell(name).unit, "long_name": tell(name).words} for name in names(panels)},
     }
-    return Stage(record, shown, names(panels))
+    return Stage(record, shown)
 
 
 def _kinds(
@@ -402,8 +387,3 @@ def _mean(values: Floats) -> float:
     """Return the mean of the finite values; 0 if there are none."""
     known = values[np.isfinite(values)]
     return float(f"{known.mean():.6g}") if known.size else 0.0
-
-
-def _figures(values: Floats) -> list[float]:
-    """Return numbers with five significant digits, which are enough for a picture."""
-    return [float(f"{value:.5g}") for value in values]
