@@ -33,7 +33,7 @@ from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_box import crowd, lists, well_gas
 from atmosbox.scene.instruments import MOMENTS, Air, Discs, Flow, Layers, Mixing, Speeds
-from atmosbox.scene.instruments.flow import LOW, modes_of_flow
+from atmosbox.scene.instruments.flow import modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
 
@@ -51,8 +51,6 @@ _ALIKE, _ANY_SPEED, _UNMIXED = np.zeros(0, np.int64), np.zeros(1), Mixing(np.zer
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _DENSITIES = 129
 """Number of densities at which the adiabatic lapse rate over gravity is tabulated, up to that at which discs freeze."""
-_FRESH = 0.2
-"""Share by which the newest frame counts in the wind that is drawn."""
 
 
 class LabBox(NamedTuple):
@@ -76,7 +74,7 @@ class LabBox(NamedTuple):
     layers: Average
     picture: Picture
     crowd: Any
-    start: Start | None
+    start: Start
     seeded: bool
     stage: Stage
     swift: float
@@ -260,7 +258,7 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
         speeds=np.zeros(edges.size - 1),
         layers=np.zeros(5 * rows),
         virial=np.zeros(rows),
-        running=np.zeros(0 if discs is None else 7),
+        running=np.zeros(0 if discs is None else 3),
         mixture=_mixture(mixing, setup.frame),
         water=hygrometer(prepared, setup),
         flow=_wind(setup),
@@ -293,12 +291,7 @@ def _wind(setup: Setup) -> Any:
         high=high,
         wave=np.concatenate(across),
         column=np.zeros((2, columns)),
-        tagged=np.zeros(parcel.number if rows else 0, np.int64),
-        release=flow.release,
-        low=LOW * float(parcel.length[2]),
-        near=LOW if flow.chimney else 1.0,
         wind=np.zeros((2, rows * columns)),
-        fresh=_FRESH,
         lapse=lapse,
         dense=dense,
         adiabat=np.full(rows, math.nan),

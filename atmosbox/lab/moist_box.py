@@ -12,7 +12,7 @@ from atmosbox.engine.liquid.substance import Substance
 from atmosbox.lab.kernels.hygrometer import Hygrometer
 from atmosbox.lab.stage import instrument_of
 from atmosbox.lab.theory_table import finer_at_kinks, theory_at
-from atmosbox.page.frame import POOL, RAIN, SWELLING, places
+from atmosbox.page.frame import SWELLING, places
 from atmosbox.scene.instruments import Leaving, MoistLift
 from atmosbox.scene.instruments.water import _CRITICAL
 from atmosbox.theory.equation_of_state import _CONTACT_SERIES
@@ -150,5 +150,4 @@ def liquid_picture(parcel: Any, scale: Scale, stage: Stage) -> tuple[Any, ...]:
         water,
         SWELLING * float(record["species"][-1]["drawn"]),
         spread,
-        np.array([POOL, RAIN]),
     )

@@ -20,7 +20,6 @@ from atmosbox.lab.moist_box import bins_of
 from atmosbox.lab.stage import COLDER, instrument_of, running_panels
 from atmosbox.lab.theory_table import short_run, show_plan, tables
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.lab.well_box import has_bath
 from atmosbox.page import ROUND
 from atmosbox.page.controls import gauges, knob_controls
 from atmosbox.page.lesson import lesson_of
@@ -92,13 +91,13 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
     unit = setup.scale.time / to_si(1.0, setup.time_unit)
     show_plan(stage.record["panels"], curves, unit)
-    series = {name for name, _, _ in readings} | {name for table in curves for name in table["curves"]}
+    names, theory = [name for name, _, _ in readings], [name for table in curves for name in table["curves"]]
     plan = {
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
             "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
-            "lesson": _lesson(prepared, series, setup, stage.record["panels"]),
+            "lesson": _lesson(prepared, {*names, *theory}, setup, stage.record["panels"]),
         },
         "base": BASE,
         "size": memory.size,
@@ -113,7 +112,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "samples": setup.samples,
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
-        "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
+        "whole": setup.ends or _against_each_other(panels, set(names)),
         "rate": _rate(setup, _SOON if setup.ends or _has_wind(box) else _WHOLE),
         "time": unit,
         "length": setup.scale.length * stage.record["metre"],
@@ -125,22 +124,21 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "ledger": Reading["LEDGER_RESIDUAL"].value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
-        "gauges": [] if box.gauges.running.size else gauges(prepared.settings, [name for name, _, _ in readings]),
+        "gauges": [] if box.gauges.running.size else gauges(prepared.settings, names),
         "profiles": profiles,
         "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),
         "tables": curves,
         "planned": [_AT_REST] if _has_wind(box) else _planned_alone(box),
         "knobs": numbers,
-        "units": {},
+        "units": {
+            name: declared(name, setup.time_unit).unit for name in (*names, *theory) if known(name.partition("[")[0])
+        },
         "command": _command(prepared),
         "link": link_start(prepared),
         "seeded": box.seeded,
         "seed": prepared.settings.seed,
     }
-    names = [name for name, _, _ in readings]
-    names += [name for table in plan["tables"] for name in table["curves"]]
-    plan["units"] = {name: declared(name, setup.time_unit).unit for name in names if known(name.partition("[")[0])}
     return plan, memory, box
 
 
@@ -260,13 +258,10 @@ def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
     gauges, layers = box.gauges, box.gauges.virial.size
     water: Any = gauges.water
+    shown = ("number_density", "layer_temperature", "layer_pressure", "layer_wind")[: 4 if _has_wind(box) else 3]
+    across = gauges.mixture.mean.size // len(MOMENTS)
     rows = [("speed_probability_density", "speeds", 0, gauges.speeds.size)]
-    rows += [
-        (name, "layers", place * layers, layers)
-        for place, name in enumerate(("number_density", "layer_temperature", "layer_pressure", "layer_wind"))
-        if _has_wind(box) or name != "layer_wind"
-    ]
-    across = gauges.sides.columns if gauges.mixture.moments.size else 0
+    rows += [(name, "layers", place * layers, layers) for place, name in enumerate(shown)]
     rows += [(f"left_gas_share_{name}", "gauges.mixture", place * across, across) for place, name in enumerate(MOMENTS)]
     rows += [("leaving_energy_probability_density", "gauges.water", 0, water.width.size)] if water else []
     found = [
@@ -311,7 +306,7 @@ def _fixed(box: LabBox) -> dict[str, Any]:
 def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
     setup, scale, driver = box.setup, box.setup.scale, getattr(box.setup.parcel, "driver", None)
-    warm = {"kernel": "warm_bath" if box.attracts and has_bath(setup) else "warm_walls", "argument": "kT"}
+    warm = {"kernel": "warm_bath" if box.attracts and box.gas.bath.rate > 0.0 else "warm_walls", "argument": "kT"}
     warm |= {"times": BOLTZMANN, "over": scale.energy}
     # a part of the way, or a height; both are converted to a moment of the ascent
     lead = {"kernel": "lead", "argument": "towards", "end": float(driver.course.end)} if driver else {}

@@ -57,8 +57,6 @@ def allowed(host: str | None, origin: str | None) -> bool:
     >>> allowed("evil.example:8642", "http://evil.example:8642")
     False
     """
-    if host is None:
-        return False
     try:
         name = urlsplit(f"//{host}").hostname or ""
         named = name == "localhost" or bool(ipaddress.ip_address(name))
@@ -108,7 +106,7 @@ class Server(socketserver.ThreadingTCPServer):
         token: str | None = None,
         language: str = "auto",
     ) -> None:
-        self._written = prepared
+        self.written = prepared
         presets = [each.values for each in lesson_of(prepared.module).presets]
         self._texts = [text for values in (prepared.settings.as_dict(), *presets) for text in values.values()]
         self.token = token
@@ -128,11 +126,6 @@ class Server(socketserver.ThreadingTCPServer):
         ) from problem
 
     @property
-    def scene(self) -> str:
-        """The name of the scene."""
-        return self._written.scene
-
-    @property
     def address(self) -> str:
         """The address of the page."""
         return f"http://{HOST}:{self.server_address[1]}/{f'?token={self.token}' if self.token else ''}"
@@ -149,18 +142,18 @@ class Server(socketserver.ThreadingTCPServer):
         AtmosboxError
             If a setting is refused, or the box cannot run in a page.
         """
-        checked = type(self._written.settings)
+        checked = type(self.written.settings)
         free = {told.name for told in checked.describe() if told.kind == "str" and not told.choices}
         for name, text in settings.items():  # a text may name a file, and reading it would tell what is in it
             if field_name(name) in free and text not in self._texts:
                 raise SettingError(name, text, "cannot be chosen in the page", Command("live", (Setting(name, text),)))
-        prepared = replace(self._written, settings=checked.from_user(settings))
+        prepared = replace(self.written, settings=checked.from_user(settings))
         _, starts, module, stored = self._data(prepared)
         return json.dumps({"starts": starts, "module": module, "stored": stored})
 
     def _data(self, prepared: Prepared) -> tuple[Any, list[Any], str, str]:
         with _ONE_AT_A_TIME:
-            start, module = served_start(prepared, self._written)
+            start, module = served_start(prepared, self.written)
         return lab_data([start], module, prepared.scene, level=1)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -203,7 +196,7 @@ class _Answer(BaseHTTPRequestHandler):
             return self._send(200, self.server.plan(settings), "application/json")
         except AtmosboxError as error:
             if any(isinstance(part, Option) and part.name == "engine" for part in error.remedy):
-                error.remedy = elsewhere(self.server.scene)  # the page has one engine
+                error.remedy = elsewhere(self.server.written.scene)  # the page has one engine
             return self._send(422, error.said(_in_page))
         except Exception as error:
             return self._send(500, f"The box cannot be built ({type(error).__name__}: {error}).")

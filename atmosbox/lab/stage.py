@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from atmosbox.page import NEIGHBOURS, Box, Stage, stage
 from atmosbox.page.lesson import lesson_of
+from atmosbox.page.panel import declared, panel_record
 from atmosbox.page.word import card_of
 from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.panels import without_headlines
@@ -71,6 +73,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         diameter[~present] = float(np.nanmax(diameter)) if present.any() else DRY_AIR.diameter
         water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
     fast = _swift(mass / scale.mass)
+    tell = functools.partial(declared, time_unit=setup.time_unit)
     counted = hasattr(parcel, "neighbours")  # colours show neighbours, because speeds do not show drops
     made = stage(
         title=str(getattr(module, "title", prepared.scene)),
@@ -89,7 +92,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         right=setup.right,
         time_unit=setup.time_unit,
         fastest=NEIGHBOURS if counted else fast * math.sqrt(_warmest(setup)) * scale.velocity,
-        panels=panels,
+        panels=[panel_record(each, tell) for each in panels if each.kind != "discs"],
         discs=any(panel.kind == "discs" for panel in panels),
         counted=counted,
     )

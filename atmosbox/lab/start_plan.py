@@ -14,7 +14,7 @@ from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.start.overlap import bins_of, spheres_of
-from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start, can_start
+from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start
 
 
 def is_drawn(parcel: Any) -> bool:
@@ -23,18 +23,13 @@ def is_drawn(parcel: Any) -> bool:
     It cannot if the scene does not declare the start, or gives the places of the molecules.
     """
     modes, start = parcel.arrays().modes, parcel.start
-    if (
-        start is None
-        or not parcel.number
-        or not can_start(modes)
-        or (modes.gravity and (modes.mixed or not modes.rows))
-    ):
+    if start is None or not parcel.number or (modes.gravity and (modes.mixed or not modes.rows)):
         return False
     return not any(isinstance(p, Placed) or (isinstance(p, Rotating) and np.ndim(p.kT)) for p in start.parts)
 
 
-def start_of(parcel: Any, layout: Any) -> Start | None:
-    """Return the data of the kernel ``start`` of a box; None if its module has no such kernel.
+def start_of(parcel: Any, layout: Any) -> Start:
+    """Return the data of the kernel ``start`` of a box.
 
     Nothing is drawn in a box whose start a page cannot draw: the kernel needs the data only to be loaded.
 
@@ -45,8 +40,6 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
     [1, 0]
     """
     arrays = parcel.arrays()
-    if not can_start(arrays.modes):
-        return None
     declared = parcel.start if is_drawn(parcel) else Declared(parcel.number, ())
     given: dict[str, Any] = {part.draws: part for part in declared.parts}
     places, moving = given.get("position", Scattered()), given.get("velocity", Maxwell(0.0))

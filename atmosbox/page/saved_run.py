@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,8 +18,8 @@ from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.file.provenance import parameters
 from atmosbox.page.document import LANGUAGES, THEMES, view_page
 from atmosbox.page.frame import pack
-from atmosbox.page.panel import Meaning, declared, names, plain
-from atmosbox.page.stage import NEIGHBOURS, Box, Stage, page_box, share, stage
+from atmosbox.page.panel import Meaning, declared, names, panel_record, plain
+from atmosbox.page.stage import NEIGHBOURS, Box, page_box, share, stage
 from atmosbox.page.word import changed, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
 
@@ -60,7 +62,7 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
 
     room = share(seen.position.shape[1], len(seen.time), runs)
     kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
-    panels, marks, sentences = _graphs(dataset)
+    panels, graphs = _graphs(dataset)
     scene, box = str(parameters(dataset).get("scene", "")), page_box(seen)
     told = stage(
         title=str(dataset.attrs.get("title", scene)),
@@ -74,13 +76,10 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
         right=seen.right,
         fastest=fastest,
         time_unit=str(dataset["elapsed_time"].attrs.get("units", "ns")),
-        panels=panels,
+        panels=graphs,
         most=room.molecules,
         discs=seen.discs,
         counted=seen.neighbours is not None,
-        meaning=lambda name: _meaning(dataset, name),
-        sentences=sentences,
-        marks=marks,
     )
     record = {
         "stage": told.record,
@@ -89,33 +88,30 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
         "notes": notes(seen, told.record, frames=len(kept)),
         **_values(dataset, panels, box),
     }
-    return Page(record, list(_frames(told, seen, kept)))
-
-
-def _frames(told: Stage, seen: Molecules, kept: NDArray[np.int_]) -> Iterator[bytes]:
-    """Yield the frames whose indices are in ``kept``, as bytes."""
-    for sequence, index in enumerate(kept):
-        yield told.frame(
+    shown = seen.speed if seen.neighbours is None else seen.neighbours
+    frames = [
+        told.frame(
             sequence,
             float(seen.time[index]),
             seen.side[index],
             seen.position[index],
-            (seen.speed if seen.neighbours is None else seen.neighbours)[index],
+            shown[index],
             drops=None if seen.drops is None else seen.drops[index],
             liquid=0 if seen.liquid is None else int(seen.liquid[index]),
             rained=0 if seen.rained is None else int(seen.rained[index]),
         )
+        for sequence, index in enumerate(kept)
+    ]
+    return Page(record, frames)
 
 
-def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str, float]], list[list[str]]]:
-    """Return the panels for which the file has data, the levels that they mark, and their headline sentences."""
-    from dataclasses import replace
-
+def _graphs(dataset: xr.Dataset) -> tuple[list[Panel], list[dict[str, Any]]]:
+    """Return the panels for which the file has data; and the same, with their headline sentences, for the page."""
     from atmosbox.plot.caption import headlines
     from atmosbox.plot.skewt import levels
 
     if "atmosbox_panels" not in dataset.attrs:
-        return (), {}, []
+        return [], []
     try:
         stated = from_json(dataset.attrs["atmosbox_panels"])
     except ValueError as error:
@@ -125,9 +121,12 @@ def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str,
         lines = tuple(line for line in panel.lines if all(_held(dataset, name) for name in line.variables))
         if lines and panel.kind != "discs":
             panels.append(replace(panel, lines=lines))
-    marks = {number: levels(dataset, panel) for number, panel in enumerate(panels) if panel.kind == "skewt"}
-    told = headlines(dataset, tuple(panels))
-    return tuple(panels), marks, [[reading.sentence for reading in each] for each in told]
+    graphs = []
+    for panel, told in zip(panels, headlines(dataset, tuple(panels)), strict=True):
+        marks = levels(dataset, panel) if panel.kind == "skewt" else {}
+        sentences = [each.sentence for each in told]
+        graphs.append(panel_record(panel, partial(_meaning, dataset), sentences=sentences, marks=marks))
+    return panels, graphs
 
 
 def _held(dataset: xr.Dataset, name: str) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import namedtuple
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.file.molecules import Molecules
 from atmosbox.page.frame import clumps, encode, layer
-from atmosbox.page.panel import Meaning, declared, panel_record, plain
-from atmosbox.scene.panels import Panel
+from atmosbox.page.panel import plain
 from atmosbox.theory.constants import DRY_AIR
 
 MOST = 5000
@@ -25,11 +25,8 @@ _ENOUGH = 240  # frames; a page with fewer would rather leave out molecules
 Indices = NDArray[np.intp]
 
 
-class Share(NamedTuple):
+class Share(namedtuple("Share", "molecules frames")):
     """Numbers of molecules and frames of a run that a page holds."""
-
-    molecules: int
-    frames: int
 
 
 def share(molecules: int, frames: int, runs: int = 1) -> Share:
@@ -177,14 +174,13 @@ class Stage(NamedTuple):
         drops: ArrayLike | None = None,
         liquid: int = 0,
         rained: int = 0,
-        highest: float | None = None,
     ) -> bytes:
         """Return one frame as the bytes that the page reads, see `atmosbox.page.frame.encode`.
 
         ``time`` has the unit of the stage; ``length`` (axis,), ``position`` (molecule, axis) and the positions and
-        radii of ``drops`` (drop, 4) are in m, ``speed`` (molecule,) and ``highest``, the top of the colour scale, in
-        m/s. All molecules of the run are given, with NaN in the liquid; ``liquid`` is the number of those in a mist or
-        a pool, ``rained`` of those that have left as rain.
+        radii of ``drops`` (drop, 4) are in m, ``speed`` (molecule,) in m/s. All molecules of the run are given, with
+        NaN in the liquid; ``liquid`` is the number of those in a mist or a pool, ``rained`` of those that have left as
+        rain.
         """
         metre = self.record["metre"]
         sides = np.asarray(length, np.float64) * metre
@@ -200,7 +196,7 @@ class Stage(NamedTuple):
         elif liquid:
             wet = clumps(liquid, water, sides, self.record["species"][-1]["drawn"])
         wet = np.concatenate((wet, layer(rained, water, rain=True)))
-        return encode(sequence, time, sides, place, fast, highest or self.record["speed"]["high"], wet)
+        return encode(sequence, time, sides, place, fast, self.record["speed"]["high"], wet)
 
 
 def stage(
@@ -216,13 +212,10 @@ def stage(
     story: str = "",
     settings: Iterable[tuple[str, str]] = (),
     time_unit: str = "ns",
-    panels: Sequence[Panel] = (),
+    panels: Sequence[dict[str, Any]] = (),
     most: int = MOST,
     discs: bool = False,
     counted: bool = False,
-    meaning: Callable[[str], Meaning] | None = None,
-    sentences: Sequence[Sequence[str]] = (),
-    marks: Mapping[int, dict[str, float]] | None = None,
 ) -> Stage:
     """Return the stage of a run: the data that the page gets once.
 
@@ -243,18 +236,14 @@ def stage(
         Contents of the caption.
     time_unit : str
         The unit of the times of frames.
+    panels : sequence of dict
+        The graphs, see `panel_record`.
     most : int
         Greatest number of molecules that are drawn.
     discs : bool
         Whether the molecules are called discs and are drawn each with its own size.
     counted : bool
         Whether the colours show the number of neighbours of a molecule, and not its speed.
-    meaning : callable, optional
-        Function that returns the `Meaning` of a variable; by default that of its declaration.
-    sentences : sequence of sequence of str
-        The headline numbers of each panel.
-    marks : mapping of int to dict, optional
-        Pressures of the levels that panels mark [hPa], by the number of the panel.
 
     Examples
     --------
@@ -290,8 +279,6 @@ def stage(
         }
         for number, name in enumerate(kinds)
     ]
-    tell = meaning or (lambda name: declared(name, time_unit))
-    graphs = [(number, panel) for number, panel in enumerate(panels) if panel.kind != "discs"]
     record = {
         "title": title,
         "story": story,
@@ -314,15 +301,7 @@ def stage(
             "counted": counted,
             "bend": _BEND if discs else 1.0,
         },
-        "panels": [
-            panel_record(
-                panel,
-                tell,
-                sentences=sentences[number] if number < len(sentences) else (),
-                marks=(marks or {}).get(number),
-            )
-            for number, panel in graphs
-        ],
+        "panels": list(panels),
     }
     return Stage(record, shown)
 

@@ -65,7 +65,7 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     if len({each["scene"] for each in told}) > 1:
         return [str(run.attrs.get("title", each["scene"])) for run, each in zip(runs, told, strict=True)]
     different = [name for name in known if len({each.get(name) for each in told}) > 1]
-    headings = [_heading(each, different) for each in told]
+    headings = [" · ".join(f"{name} {each[name]}" for name in different if name in each) for each in told]
     return [heading or f"run {number + 1}" for number, heading in enumerate(headings)]
 
 
@@ -128,10 +128,6 @@ def _units(scene: str) -> dict[str, str]:
     if scene not in scenarios.names():
         return {}
     return {parameter.name: parameter.unit for parameter in scenarios.load(scene).Settings.describe()}
-
-
-def _heading(told: Mapping[str, str], names: Sequence[str]) -> str:
-    return " · ".join(f"{name} {told[name]}" for name in names if name in told)
 
 
 def _said(value: object, unit: str) -> str:

@@ -2,7 +2,6 @@
 
 import functools
 import math
-from collections import namedtuple
 from collections.abc import Callable
 from typing import Any
 
@@ -13,15 +12,6 @@ from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.wells.well_advance import advancing
 from atmosbox.engine.wells.well_events import specialise
 from atmosbox.lab.kernels.readings import ENERGY
-
-
-class Lists(namedtuple("Lists", "stride due full_depth strength work")):
-    """The sizes of the lists of neighbours, and the depth of the wells.
-
-    ``stride : (1,)`` is the present number of words of a list, ``due : (1,)`` what is to be done with the lists;
-    ``full_depth : (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over
-    the full one; ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
-    """
 
 
 @kernel
@@ -52,16 +42,16 @@ def attracting(modes: Modes) -> dict[str, Callable[..., Any]]:
         return Status.DONE.value if placed else Status.FULL.value
 
     @kernel
-    def attract(gas, book, layout, gauges, strength):
+    def attract(gas, book, crowd, gauges, strength):
         """Change the depth of all wells: see `AttractingParcelSet.set_strength`."""
         depth, work = gas.wells.depth, -energy_of_wells(gas.wells)
         for one in range(depth.shape[0]):
             for two in range(depth.shape[1]):
-                depth[one, two] = strength * layout.full_depth[one, two]
+                depth[one, two] = strength * crowd.full_depth[one, two]
         work += energy_of_wells(gas.wells)
-        layout.work[0] += work
+        crowd.work[0] += work
         gauges.before[ENERGY] += work
-        layout.strength[0] = strength
+        crowd.strength[0] = strength
         replan(gas, book.now[0])
         return 0
 

@@ -6,6 +6,8 @@ from collections import namedtuple
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.schedule import interpolate
@@ -79,12 +81,6 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return 1.0 + 4.0 * filled * (value / (1.0 - filled))
 
     @kernel
-    def liquid_kT(reservoir):
-        """Return the temperature of the liquid [energy]; NaN if there are neither liquid nor nuclei."""
-        capacity = heat_capacity(reservoir)
-        return reservoir.energy[THERMAL] / capacity if capacity > 0.0 else math.nan
-
-    @kernel
     def adiabat(time, logarithm, lift, water):
         """Return the temperature of a parcel by theory [energy], given the logarithm of its pressure."""
         moment = interpolate(time, lift.course_time, lift.course_moment)
@@ -135,7 +131,8 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         pressure = vapour / (x * y * z) * kT * factor(number / volume, wide, water)
         means[Reading.GAS_TEMPERATURE] += kT
         means[Reading.WATER_VAPOR_PARTIAL_PRESSURE] += pressure
-        means[Reading.LIQUID_TEMPERATURE] += liquid_kT(reservoir)
+        capacity = heat_capacity(reservoir)  # 0 if there are neither liquid nor nuclei
+        means[Reading.LIQUID_TEMPERATURE] += reservoir.energy[THERMAL] / capacity if capacity > 0.0 else math.nan
         means[Reading.HUMIDITY_MIXING_RATIO] += vapour / air if air > 0.0 else math.nan
         means[Reading.CLOUD_LIQUID_WATER_MIXING_RATIO] += reservoir.count[LIQUID] / air if air > 0.0 else math.nan
         means[Reading.RAIN_MIXING_RATIO] += reservoir.count[RAINED] / air if air > 0.0 else math.nan
@@ -174,20 +171,14 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def end_leaving(reservoir, water):
         """Read the energies of the molecules that have left the liquid: see `instruments.Leaving`."""
-        total = 0.0
-        for k in range(reservoir.spectrum.size):
-            total += reservoir.spectrum[k]
+        total = np.sum(reservoir.spectrum)
         for k in range(water.width.size):
-            water.mean[k] = water.error[k] = 0.0 if total > 0.0 else math.nan
-            if k < water.empty or not total > 0.0:
-                continue
-            number = 0.0
-            first = (k - water.empty) * water.merged
-            for each in range(first, first + water.merged):
-                number += reservoir.spectrum[each]
-            share = number / total
-            water.mean[k] = share / water.width[k]
-            water.error[k] = math.sqrt(share * (1.0 - share) / total) / water.width[k]
+            water.mean[k] = water.error[k] = 0.0 if total > 0 else math.nan
+            if k >= water.empty and total > 0:
+                first = (k - water.empty) * water.merged
+                share = np.sum(reservoir.spectrum[first : first + water.merged]) / total
+                water.mean[k] = share / water.width[k]
+                water.error[k] = math.sqrt(share * (1.0 - share) / total) / water.width[k]
 
     @kernel
     def end_frame(gas, ascent, book, time, lasted, gauges):

@@ -17,14 +17,13 @@ from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.knobs import knobs
 from atmosbox.lab.kernels.picture import picture
-from atmosbox.lab.kernels.starting import can_start, starting
+from atmosbox.lab.kernels.starting import starting
 
 
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found = knobs(modes, wells=wells)
-    found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
-    found |= {"look": picture(modes), "begin_averages_anew": begin_averages_anew}
+    found |= {"start": starting(modes, wells=wells), "look": picture(modes), "begin_averages_anew": begin_averages_anew}
     found |= zip(("begin", "sample", "end_frame", "note_frame"), gauging(modes, wells=wells), strict=True)
     if wells:
         return found | attracting(modes) | clustering(modes)

@@ -21,7 +21,7 @@ from atmosbox.engine.exact.layout import Column, Layout, write_column
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.liquid.reservoir import cover
 from atmosbox.lab.kernels.readings import ENERGY
-from atmosbox.lab.kernels.starting import can_start, kinetic_energy
+from atmosbox.lab.kernels.starting import kinetic_energy
 
 
 @functools.cache
@@ -82,7 +82,7 @@ def lead(gas, ascent, book, towards):
 
 def can_set_gravity(modes: Modes) -> bool:
     """Return whether a page can change gravity in boxes of a set of modes: columns of one gas without a piston."""
-    return modes.gravity and modes.rows and can_start(modes) and not (modes.piston or modes.mixed or modes.phases)
+    return modes.gravity and modes.rows and not (modes.piston or modes.mixed or modes.phases)
 
 
 @kernel

@@ -68,11 +68,6 @@ class Start(
     """
 
 
-def can_start(modes: Modes) -> bool:
-    """Return whether a page can start boxes of a set of modes with another seed."""
-    return modes.ascends or not modes.piston
-
-
 @kernel
 def _first_state(seed, first):
     """Return the first state of the random numbers of a seed below 2^64: see `random.new_state`."""
