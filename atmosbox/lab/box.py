@@ -158,23 +158,14 @@ def lab_box(prepared: Prepared) -> LabBox:
     gauges, layers = _gauges(prepared, setup), instrument_of(setup, Layers)
     # a block of the profiles is twice as long as the correlation time of the column's energy: nearly independent
     rows, memory = gauges.parts.rows, 0.0 if layers is None else layers.memory
+    speeds = _average(gauges.speeds.size, gauges.speeds.size, 1)
+    profiles = _average(5 * rows, 4 * rows, max(1, math.ceil(2.0 * memory / setup.frame)))
+    gas, drops = (well_gas(parcel), crowd(setup)) if attracts else (_gas(arrays, layout), 0)
+    start, shown = start_of(parcel, layout), _picture(parcel, setup.scale, stage)
     box = LabBox(
-        prepared,
-        setup,
-        well_gas(parcel) if attracts else _gas(arrays, layout),
-        _ascent(arrays.ascent),
-        arrays.book,
-        layout,
-        gauges,
-        _average(gauges.speeds.size, gauges.speeds.size, 1),
-        _average(5 * rows, 4 * rows, max(1, math.ceil(2.0 * memory / setup.frame))),
-        _picture(parcel, setup.scale, stage),
-        crowd(setup) if attracts else 0,
-        start_of(parcel, layout),
-        is_drawn(parcel),
-        stage,
-        swift,
-    )
+        prepared, setup, gas, _ascent(arrays.ascent), arrays.book, layout, gauges, speeds, profiles, shown, drops,
+        start, is_drawn(parcel), stage, swift,
+    )  # fmt: skip
     return _without_molecules(box) if box.seeded else box
 
 
@@ -321,12 +312,7 @@ def _average(summed: int, number: int, frames: int) -> Average:
 
 def _picture(parcel: Any, scale: Scale, stage: Stage) -> Picture:
     shown, speed = np.asarray(stage.shown, np.int64), stage.record["speed"]
-    return Picture(
-        shown,
-        np.zeros(3),
-        np.zeros((shown.size, 3), np.uint16),
-        np.zeros(shown.size, np.uint8),
-        float(speed["high"]) / (1.0 if speed["counted"] else scale.velocity),
-        np.zeros(shown.size, np.uint8),
-        *liquid_picture(parcel, scale, stage),
-    )
+    place, plain = np.zeros((shown.size, 3), np.uint16), np.zeros(shown.size, np.uint8)
+    highest = float(speed["high"]) / (1.0 if speed["counted"] else scale.velocity)
+    liquid = liquid_picture(parcel, scale, stage)
+    return Picture(shown, np.zeros(3), place, plain, highest, plain.copy(), *liquid)

@@ -245,12 +245,12 @@ def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dic
         predict["draw"] = drawing(predict["draw"], panels, setup)
     if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
         return found
-    units = {_TIME: to_si(1.0, setup.time_unit)}  # all other variables of the page are in SI
-    scaled = [(goal, units.get(goal["name"], 1.0)) for goal in task["reach"]]
-    reach = [
-        goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
-        for goal, by in scaled
-    ]
+    reach = []
+    for goal in task["reach"]:
+        by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
+        reach.append(
+            goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
+        )
     return found | {"task": {**task, "reach": reach}}
 
 

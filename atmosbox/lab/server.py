@@ -34,7 +34,6 @@ PORT = 8642
 
 _TRIES = 20
 _ONE_AT_A_TIME = threading.Lock()  # a scene is watched while it builds its box, and must not see another's calls
-_LONGEST = 20_000  # characters of the settings in a request
 _PATIENCE = 20.0  # s that a browser may take to send a request
 
 
@@ -99,12 +98,7 @@ class Server(socketserver.ThreadingTCPServer):
     daemon_threads = True
 
     def __init__(
-        self,
-        prepared: Prepared,
-        *,
-        port: int | None = None,
-        token: str | None = None,
-        language: str = "auto",
+        self, prepared: Prepared, *, port: int | None = None, token: str | None = None, language: str = "auto"
     ) -> None:
         self.written = prepared
         presets = [each.values for each in lesson_of(prepared.module).presets]
@@ -113,11 +107,9 @@ class Server(socketserver.ThreadingTCPServer):
         self.document = lab_page(*self._data(prepared), language=language, served=True)
         for number in range(PORT, PORT + _TRIES) if port is None else [port]:
             try:
-                super().__init__((HOST, number), _Answer)
+                return super().__init__((HOST, number), _Answer)
             except OSError as error:
                 problem = error
-            else:
-                return
         if port is None:
             said = f"{PORT} to {PORT + _TRIES - 1}"
             raise SettingError("port", said, "are all in use", "end another program, or give a free ", Option("port"))
@@ -187,7 +179,7 @@ class _Answer(BaseHTTPRequestHandler):
         if address.path != "/plan":
             return self._send(404, "There is one page here, at /.")
         try:
-            settings = json.loads(asked["settings"][0][:_LONGEST])
+            settings = json.loads(asked["settings"][0])
             if not isinstance(settings, dict):
                 raise TypeError
         except (LookupError, TypeError, ValueError, RecursionError):

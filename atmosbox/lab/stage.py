@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.page import NEIGHBOURS, Box, Stage, stage
+from atmosbox.file.molecules import Molecules
+from atmosbox.page import NEIGHBOURS, Stage, stage
 from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared, panel_record
 from atmosbox.page.word import card_of
-from atmosbox.scene.instruments import wall_laws
+from atmosbox.scene import instruments
 from atmosbox.scene.panels import without_headlines
-from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
 
 if TYPE_CHECKING:
@@ -63,38 +63,34 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
     """Return what a page shows of a box, and `_swift` of its molecules in m s-1 K-1/2."""
     parcel: Any = setup.parcel
     scale, module = setup.scale, prepared.module
-    present = parcel.present
-    mass, diameter = np.full((2, present.size), math.nan)
-    mass[present] = parcel.mass * scale.mass
-    diameter[present] = parcel.diameter * scale.length
-    water = None
-    if hasattr(parcel, "vapour"):
-        mass[~present] = WATER.molecule_mass  # only molecules of water ever leave the gas
-        diameter[~present] = float(np.nanmax(diameter)) if present.any() else DRY_AIR.diameter
-        water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
-    fast = _swift(mass / scale.mass)
+    # colours show neighbours, because speeds do not show drops
+    counted, moist = hasattr(parcel, "neighbours"), hasattr(parcel, "vapour")
+    all_of_them = instruments.Molecules(setup.right)
+    all_of_them.end_frame(parcel, parcel.snapshot())
+    told = all_of_them.readings(scale, 0)
+    seen = Molecules(
+        discs=any(panel.kind == "discs" for panel in panels),
+        time=np.zeros(1),
+        **{name: told[f"molecule_{name}"] for name in ("position", "speed", "mass", "diameter")},
+        water=told["species"] == 1 if moist else None,
+        side=told["box_side"],
+        walls=instruments.wall_laws(parcel),
+        wall_temperature=parcel.wall_kT()[None] * scale.temperature,
+        planar=parcel.planar,
+        gravity=parcel.gravity > 0.0,
+        drops=told.get("drop_position"),
+        neighbours=told.get("molecule_neighbour_count"),
+        right=setup.right,
+    )
+    fast = _swift(seen.mass / scale.mass)
     tell = functools.partial(declared, time_unit=setup.time_unit)
-    counted = hasattr(parcel, "neighbours")  # colours show neighbours, because speeds do not show drops
     made = stage(
+        seen,
         title=str(getattr(module, "title", prepared.scene)),
         story=lesson_of(module).story or (module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
-        box=Box(
-            length=tuple(float(side) * scale.length for side in parcel.length),  # type: ignore[arg-type]
-            walls=wall_laws(parcel),
-            wall_temperature=tuple((parcel.wall_kT() * scale.temperature).tolist()),
-            planar=parcel.planar,
-            gravity=parcel.gravity > 0.0,
-        ),
-        mass=mass,
-        diameter=diameter,
-        water=water,
-        drops=hasattr(parcel, "drops"),
-        right=setup.right,
         time_unit=setup.time_unit,
         fastest=NEIGHBOURS if counted else fast * math.sqrt(_warmest(setup)) * scale.velocity,
         panels=[panel_record(each, tell) for each in panels if each.kind != "discs"],
-        discs=any(panel.kind == "discs" for panel in panels),
-        counted=counted,
     )
     made.record.update(
         scene=prepared.scene, seed=prepared.settings.seed, engine=str(prepared.engine), version=__version__,

@@ -19,7 +19,7 @@ from atmosbox.lab.plan import lab_plan
 from atmosbox.lab.wasm_module import module_bytes
 from atmosbox.page.controls import control, setting_controls
 from atmosbox.page.lesson import lesson_of
-from atmosbox.scene.settings import Parameter
+from atmosbox.scene.conversion import phrase
 from atmosbox.simulation.preparation import Prepared, prepare
 
 AS_WRITTEN = "as the page was written"
@@ -197,15 +197,10 @@ def _offered(prepared: Prepared, *, seeded: bool) -> dict[str, list[str]]:
         if told.name == "molecules":
             found[told.name] = [str(now), *(str(round(times * now)) for times in _TIMES)]
         elif told.name == meeting:
-            found[told.name] = [_said(value, told) for value in (now, *(float(f"{t * now:.2g}") for t in _WIDER))]
+            found[told.name] = [phrase(value, told.unit) for value in (now, *(float(f"{t * now:.2g}") for t in _WIDER))]
         elif told.name == "seed" and not seeded:
             found[told.name] = [str(now + k) for k in range(_SEEDS + 1)]
     return found
-
-
-def _said(value: float, told: Parameter) -> str:
-    """Return a value with its unit as text."""
-    return f"{value:g} {told.unit}" if told.unit != "1" else f"{value:g}"
 
 
 def _others(prepared: Prepared, offered: dict[str, list[str]]) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -19,7 +19,7 @@ from atmosbox.file.provenance import parameters
 from atmosbox.page.document import LANGUAGES, THEMES, view_page
 from atmosbox.page.frame import pack
 from atmosbox.page.panel import Meaning, declared, names, panel_record, plain
-from atmosbox.page.stage import NEIGHBOURS, Box, page_box, share, stage
+from atmosbox.page.stage import NEIGHBOURS, share, stage
 from atmosbox.page.word import changed, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
 
@@ -63,30 +63,23 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
     room = share(seen.position.shape[1], len(seen.time), runs)
     kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
     panels, graphs = _graphs(dataset)
-    scene, box = str(parameters(dataset).get("scene", "")), page_box(seen)
+    scene = str(parameters(dataset).get("scene", ""))
     told = stage(
+        seen,
         title=str(dataset.attrs.get("title", scene)),
         story=story_of(dataset),
         settings=settings_of(dataset),
-        box=box,
-        mass=seen.mass,
-        diameter=seen.diameter,
-        water=seen.water,
-        drops=seen.drops is not None,
-        right=seen.right,
         fastest=fastest,
         time_unit=str(dataset["elapsed_time"].attrs.get("units", "ns")),
         panels=graphs,
         most=room.molecules,
-        discs=seen.discs,
-        counted=seen.neighbours is not None,
     )
     record = {
         "stage": told.record,
         "heading": heading,
         "footer": footer(dataset),
         "notes": notes(seen, told.record, frames=len(kept)),
-        **_values(dataset, panels, box),
+        **_values(dataset, panels, seen.walls),
     }
     shown = seen.speed if seen.neighbours is None else seen.neighbours
     frames = [
@@ -135,12 +128,12 @@ def _held(dataset: xr.Dataset, name: str) -> bool:
     return name in dataset.variables and bool(dataset[name].notnull().any())
 
 
-def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str, Any]:
+def _values(dataset: xr.Dataset, panels: Sequence[Panel], laws: Sequence[str]) -> dict[str, Any]:
     """Return the values of the graphs by name, and the names of the variables that are functions of time."""
     from atmosbox.plot.curve import read
 
     walls = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
-    warm = [f"wall_temperature[{wall}]" for wall, law in zip(walls, box.walls, strict=True) if law == "heat_bath"]
+    warm = [f"wall_temperature[{wall}]" for wall, law in zip(walls, laws, strict=True) if law == "heat_bath"]
     values: dict[str, Any] = {}
     timed: list[str] = []
     for name in dict.fromkeys(("elapsed_time", *names(panels), *warm)):
