@@ -82,8 +82,7 @@ class LabBox(NamedTuple):
     @property
     def modes(self) -> Modes:
         """What the scene requires of the engine."""
-        modes: Modes = self.setup.parcel.arrays().modes  # type: ignore[attr-defined]
-        return modes
+        return self.setup.parcel.arrays().modes  # type: ignore[attr-defined, no-any-return]
 
     @property
     def attracts(self) -> bool:

@@ -143,11 +143,5 @@ def liquid_picture(parcel: Any, scale: Scale, stage: Stage) -> tuple[Any, ...]:
     spread = places(water)
     arrays = parcel.arrays()
     drops = len(arrays.book.moisture.drops.record) if arrays.modes.drops else 0
-    return (
-        np.zeros((max(len(spread), drops) + 1, 4), np.float32),
-        np.zeros(1, np.int64),
-        scale.length * float(record["metre"]),
-        water,
-        SWELLING * float(record["species"][-1]["drawn"]),
-        spread,
-    )
+    pieces, clump = np.zeros((max(len(spread), drops) + 1, 4), np.float32), float(record["species"][-1]["drawn"])
+    return pieces, np.zeros(1, np.int64), scale.length * float(record["metre"]), water, SWELLING * clump, spread

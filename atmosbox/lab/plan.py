@@ -248,9 +248,8 @@ def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dic
     reach = []
     for goal in task["reach"]:
         by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
-        reach.append(
-            goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
-        )
+        scaled = {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
+        reach.append(goal | scaled)
     return found | {"task": {**task, "reach": reach}}
 
 
@@ -278,9 +277,8 @@ def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
 def _wind(box: LabBox) -> dict[str, Any]:
     """Return the cells of the wind that is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
     flow: Any = box.gauges.flow
-    rows, columns = flow.high.size, flow.wave.shape[1]
     speed = float(box.setup.scale.velocity)
-    return {"rows": rows, "columns": columns, "factor": speed, "least": _SLOWEST * speed}
+    return {"rows": flow.high.size, "columns": flow.wave.shape[1], "factor": speed, "least": _SLOWEST * speed}
 
 
 def _has_wind(box: LabBox) -> bool:
@@ -306,7 +304,10 @@ def _fixed(box: LabBox) -> dict[str, Any]:
 def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
     setup, scale, driver = box.setup, box.setup.scale, getattr(box.setup.parcel, "driver", None)
-    warm = {"kernel": "warm_bath" if box.attracts and box.gas.bath.rate > 0.0 else "warm_walls", "argument": "kT"}
+    warm: dict[str, Any] = {
+        "kernel": "warm_bath" if box.attracts and box.gas.bath.rate > 0.0 else "warm_walls",
+        "argument": "kT",
+    }
     warm |= {"times": BOLTZMANN, "over": scale.energy}
     # a part of the way, or a height; both are converted to a moment of the ascent
     lead = {"kernel": "lead", "argument": "towards", "end": float(driver.course.end)} if driver else {}

@@ -82,7 +82,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         neighbours=told.get("molecule_neighbour_count"),
         right=setup.right,
     )
-    fast = _swift(seen.mass / scale.mass)
+    fast = _swift(np.asarray(seen.mass, np.float64) / scale.mass)
     tell = functools.partial(declared, time_unit=setup.time_unit)
     made = stage(
         seen,

@@ -94,8 +94,8 @@ def _spread(parcel: Any, sides: NDArray[np.float64]) -> NDArray[np.float64]:
 def _warm(parcel: Any) -> float:
     """Return a speed of molecules that leave the warmest wall; 0 in a box without liquid: see `MoistParcelSet`."""
     arrays = parcel.arrays()
-    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
-    return math.sqrt(8.0 * max(baths, default=0.0) / arrays.substance.mass) if arrays.modes.phases else 0.0
+    warmest = float(np.nanmax([0.0, *parcel.wall_kT()]))
+    return math.sqrt(8.0 * warmest / arrays.substance.mass) if arrays.modes.phases else 0.0
 
 
 def _first_gauges(parcel: Any) -> Any:

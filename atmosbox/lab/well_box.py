@@ -45,20 +45,13 @@ def lists(parcel: Any) -> Lists:
 def crowd(setup: Setup) -> Crowd:
     """Return the data of the drops at the start, without any drop."""
     parcel: Any = setup.parcel
-    number = parcel.number
     clusters = instrument_of(setup, Clusters) or Clusters(0)
+    wells, drop, size = (np.zeros(parcel.number, np.int64) for _ in range(3))
     return Crowd(
-        members=clusters.molecules,
-        wells=np.zeros(number, np.int64),
-        drop=np.zeros(number, np.int64),
-        size=np.zeros(number, np.int64),
-        liquid=clusters.liquid,
-        virial=np.zeros(1),
-        gas_law=_gas_law(),
-        full_depth=parcel.arrays().full_depth,
-        strength=np.array([parcel.strength]),
+        members=clusters.molecules, wells=wells, drop=drop, size=size, liquid=clusters.liquid, virial=np.zeros(1),
+        gas_law=_gas_law(), full_depth=parcel.arrays().full_depth, strength=np.array([parcel.strength]),
         work=np.zeros(1),
-    )
+    )  # fmt: skip
 
 
 def _gas_law() -> NDArray[np.float64]:

@@ -73,12 +73,8 @@ def panel_record(
         label, unit, scale, invert = (getattr(panel, f"{axis}_{part}") for part in ("label", "unit", "scale", "invert"))
         means = meaning(getattr(first, axis))
         shown[axis] = unit or means.unit
-        axes[axis] = {
-            "label": label or means.words,
-            "unit": spelled(shown[axis]),
-            "log": scale == "log",
-            "invert": invert,
-        }
+        axes[axis] = {"label": label or means.words, "unit": spelled(shown[axis])}
+        axes[axis] |= {"log": scale == "log", "invert": invert}
     return {
         "kind": panel.kind,
         "title": panel.title,
