@@ -63,8 +63,6 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
     """Return what a page shows of a box, and `_swift` of its molecules in m s-1 K-1/2."""
     parcel: Any = setup.parcel
     scale, module = setup.scale, prepared.module
-    # colours show neighbours, because speeds do not show drops
-    counted, moist = hasattr(parcel, "neighbours"), hasattr(parcel, "vapour")
     all_of_them = instruments.Molecules(setup.right)
     all_of_them.end_frame(parcel, parcel.snapshot())
     told = all_of_them.readings(scale, 0)
@@ -72,14 +70,14 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         discs=any(panel.kind == "discs" for panel in panels),
         time=np.zeros(1),
         **{name: told[f"molecule_{name}"] for name in ("position", "speed", "mass", "diameter")},
-        water=told["species"] == 1 if moist else None,
+        water=told["species"] == 1 if "species" in told else None,
         side=told["box_side"],
         walls=instruments.wall_laws(parcel),
         wall_temperature=parcel.wall_kT()[None] * scale.temperature,
         planar=parcel.planar,
         gravity=parcel.gravity > 0.0,
         drops=told.get("drop_position"),
-        neighbours=told.get("molecule_neighbour_count"),
+        neighbours=told.get("molecule_neighbour_count"),  # shown as colours, because speeds do not show drops
         right=setup.right,
     )
     fast = _swift(np.asarray(seen.mass, np.float64) / scale.mass)
@@ -89,7 +87,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         title=str(getattr(module, "title", prepared.scene)),
         story=lesson_of(module).story or (module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
         time_unit=setup.time_unit,
-        fastest=NEIGHBOURS if counted else fast * math.sqrt(_warmest(setup)) * scale.velocity,
+        fastest=NEIGHBOURS if seen.neighbours is not None else fast * math.sqrt(_warmest(setup)) * scale.velocity,
         panels=[panel_record(each, tell) for each in panels if each.kind != "discs"],
     )
     made.record.update(

@@ -136,12 +136,12 @@ def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[st
 
 def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
     """Return the curves of theory as functions of the temperature of the walls."""
-    curves: dict[str, list[Any]] = {}
-    grid = _range(knob)
-    for kelvin in grid.tolist():
-        here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
-        for name, values in prepared.module.theory(here, prepared.settings).items():
-            curves.setdefault(name, []).append(_last(values, found))
+    grid, walls = _range(knob), found.wall_temperature
+    rows = [
+        prepared.module.theory(found.assign(wall_temperature=walls.where(walls.isnull(), kelvin)), prepared.settings)
+        for kelvin in grid.tolist()
+    ]
+    curves = {name: [_last(row[name], found) for row in rows] for name in rows[0]}
     return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
 
 
@@ -229,13 +229,12 @@ def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
 def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
     """Return the energy distributions of molecules that leave and that stay, by the temperature of the liquid."""
     grid = np.linspace(_COLDEST, _WARMEST, _WARMTHS)
-    curves: dict[str, list[Any]] = {}
-    ones = np.ones(found.sizes["elapsed_time"])
+    ones, rows = np.ones(found.sizes["elapsed_time"]), []
     for kelvin in grid:
         here = found.assign(liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones))
-        for name, values in prepared.module.theory(here, prepared.settings).items():
-            if np.shape(values) == found.energy.shape:
-                curves.setdefault(name, []).append(plain(values))
+        rows.append(prepared.module.theory(here, prepared.settings))
+    names = [name for name, values in rows[0].items() if np.shape(values) == found.energy.shape]
+    curves = {name: [plain(row[name]) for row in rows] for name in names}
     return {"along": "temperature_of_those_that_left", "grid": plain(grid), "curves": curves}
 
 
