@@ -112,7 +112,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "samples": setup.samples,
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
-        "whole": setup.ends or _against_each_other(panels, set(names)),
+        # whether a graph draws one series against another, so that all their values are sent each time
+        "whole": setup.ends or any({line.x, line.y} <= {*names} - {_TIME} for each in panels for line in each.lines),
         "rate": _rate(setup, _SOON if setup.ends or _has_wind(box) else _WHOLE),
         "time": unit,
         "length": setup.scale.length * stage.record["metre"],
@@ -158,12 +159,6 @@ def _rate(setup: Setup, least: float) -> float:
     side = float(np.exp(np.log(sides).mean()))
     crossings = _SLOWLY if instrument_of(setup, Nuclei) else _CROSSINGS
     return min(whole, crossings * side / speed) if speed > 0.0 else whole
-
-
-def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
-    """Return whether a graph draws one series against another, so that all their values are sent each time."""
-    times = readings - {"elapsed_time"}
-    return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
 
 
 def _drawn(
