@@ -299,11 +299,8 @@ def _fixed(box: LabBox) -> dict[str, Any]:
 def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
     setup, scale, driver = box.setup, box.setup.scale, getattr(box.setup.parcel, "driver", None)
-    warm: dict[str, Any] = {
-        "kernel": "warm_bath" if box.attracts and box.gas.bath.rate > 0.0 else "warm_walls",
-        "argument": "kT",
-    }
-    warm |= {"times": BOLTZMANN, "over": scale.energy}
+    warming = "warm_bath" if box.attracts and box.gas.bath.rate > 0.0 else "warm_walls"
+    warm = {"kernel": warming, "argument": "kT", "times": BOLTZMANN, "over": scale.energy}
     # a part of the way, or a height; both are converted to a moment of the ascent
     lead = {"kernel": "lead", "argument": "towards", "end": float(driver.course.end)} if driver else {}
     pull = {"kernel": "set_gravity", "argument": "gravity", "everywhere": "gas.box.gravity"}

@@ -28,6 +28,7 @@ COLDER = 0.5
 """Share of the scale of speeds: if the speeds reach less of it, the page takes another scale."""
 
 _FASTEST, _STEPS = 3.0, 60
+"""The highest speed of the scale, over that of kT = m; and number of speeds that are tried for a mixture."""
 _TIME = "elapsed_time"
 
 Array = NDArray[np.float64]
