@@ -28,13 +28,12 @@ from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.sums import Bins, Sum
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_box import hygrometer, liquid_picture
-from atmosbox.lab.stage import instrument_of
+from atmosbox.lab.stage import instrument_of, lab_stage, running_panels
 from atmosbox.lab.start_plan import is_drawn, start_of
 from atmosbox.lab.wasm_module import elsewhere, module_name
 from atmosbox.lab.well_box import crowd, lists, well_gas
-from atmosbox.page import NEIGHBOURS
 from atmosbox.scene.instruments import MOMENTS, Air, Discs, Flow, Layers, Mixing, Speeds
-from atmosbox.scene.instruments.flow import LOW, modes_of_flow
+from atmosbox.scene.instruments.flow import modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
 
@@ -52,8 +51,6 @@ _ALIKE, _ANY_SPEED, _UNMIXED = np.zeros(0, np.int64), np.zeros(1), Mixing(np.zer
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _DENSITIES = 129
 """Number of densities at which the adiabatic lapse rate over gravity is tabulated, up to that at which discs freeze."""
-_FRESH = 0.2
-"""Share by which the newest frame counts in the wind that is drawn."""
 
 
 class LabBox(NamedTuple):
@@ -62,7 +59,8 @@ class LabBox(NamedTuple):
     ``layers`` is the average of the profiles by height, one quantity after the other, and ``speeds`` the average of the
     shares of molecules by speed; they are empty in a scene that does not show them. If molecules attract each other,
     ``gas`` and ``layout`` are those of `well_box`, and ``crowd`` holds the data of the drops; otherwise it is 0.
-    ``start`` says how molecules are placed with another seed, if ``seeded``.
+    ``start`` says how molecules are placed with another seed, if ``seeded``. ``stage`` is what the page shows, and
+    ``swift`` a speed that hardly any molecule exceeds, see `lab_stage`.
     """
 
     prepared: Prepared
@@ -76,14 +74,15 @@ class LabBox(NamedTuple):
     layers: Average
     picture: Picture
     crowd: Any
-    start: Start | None
+    start: Start
     seeded: bool
+    stage: Stage
+    swift: float
 
     @property
     def modes(self) -> Modes:
         """What the scene requires of the engine."""
-        modes: Modes = self.setup.parcel.arrays().modes  # type: ignore[attr-defined]
-        return modes
+        return self.setup.parcel.arrays().modes  # type: ignore[attr-defined, no-any-return]
 
     @property
     def attracts(self) -> bool:
@@ -101,7 +100,7 @@ class LabBox(NamedTuple):
         return (0, 6) if not self.modes.piston else (0, 4)
 
 
-def refuse(prepared: Prepared, setup: Setup) -> None:
+def _refuse(prepared: Prepared, setup: Setup) -> None:
     """Refuse a box for which there is no module.
 
     Raises
@@ -134,17 +133,8 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
     return parcel.planar and type(parcel) is ParcelSet and can_flow(parcel.arrays().modes) and flow.shape == parts
 
 
-def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None = None) -> LabBox:
+def lab_box(prepared: Prepared) -> LabBox:
     """Return the box of a scene for a page.
-
-    Parameters
-    ----------
-    prepared
-        The scene.
-    setup
-        Its box, if it has been built.
-    stage
-        What the page shows of the box; without it three molecules are shown, enough to compile.
 
     Raises
     ------
@@ -157,8 +147,9 @@ def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None 
     >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.speeds.size
     58
     """
-    setup = build(prepared) if setup is None else setup
-    refuse(prepared, setup)
+    setup = build(prepared)
+    _refuse(prepared, setup)
+    stage, swift = lab_stage(prepared, setup, running_panels(prepared))
     parcel: Any = setup.parcel
     arrays = parcel.arrays()
     attracts = type(parcel) is AttractingParcelSet
@@ -166,21 +157,14 @@ def lab_box(prepared: Prepared, setup: Setup | None = None, stage: Stage | None 
     gauges, layers = _gauges(prepared, setup), instrument_of(setup, Layers)
     # a block of the profiles is twice as long as the correlation time of the column's energy: nearly independent
     rows, memory = gauges.parts.rows, 0.0 if layers is None else layers.memory
+    speeds = _average(gauges.speeds.size, gauges.speeds.size, 1)
+    profiles = _average(5 * rows, 4 * rows, max(1, math.ceil(2.0 * memory / setup.frame)))
+    gas, drops = (well_gas(parcel), crowd(setup)) if attracts else (_gas(arrays, layout), 0)
+    start, shown = start_of(parcel, layout), _picture(parcel, setup.scale, stage)
     box = LabBox(
-        prepared,
-        setup,
-        well_gas(parcel) if attracts else _gas(arrays, layout),
-        _ascent(arrays.ascent),
-        arrays.book,
-        layout,
-        gauges,
-        _average(gauges.speeds.size, gauges.speeds.size, 1),
-        _average(5 * rows, 4 * rows, max(1, math.ceil(2.0 * memory / setup.frame))),
-        _picture(parcel, setup.scale, stage),
-        crowd(setup) if attracts else 0,
-        start_of(parcel, layout),
-        is_drawn(parcel),
-    )
+        prepared, setup, gas, _ascent(arrays.ascent), arrays.book, layout, gauges, speeds, profiles, shown, drops,
+        start, is_drawn(parcel), stage, swift,
+    )  # fmt: skip
     return _without_molecules(box) if box.seeded else box
 
 
@@ -264,7 +248,7 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
         speeds=np.zeros(edges.size - 1),
         layers=np.zeros(5 * rows),
         virial=np.zeros(rows),
-        running=np.zeros(0 if discs is None else 7),
+        running=np.zeros(0 if discs is None else 3),
         mixture=_mixture(mixing, setup.frame),
         water=hygrometer(prepared, setup),
         flow=_wind(setup),
@@ -297,12 +281,7 @@ def _wind(setup: Setup) -> Any:
         high=high,
         wave=np.concatenate(across),
         column=np.zeros((2, columns)),
-        tagged=np.zeros(parcel.number if rows else 0, np.int64),
-        release=flow.release,
-        low=LOW * float(parcel.length[2]),
-        near=LOW if flow.chimney else 1.0,
         wind=np.zeros((2, rows * columns)),
-        fresh=_FRESH,
         lapse=lapse,
         dense=dense,
         adiabat=np.full(rows, math.nan),
@@ -330,17 +309,9 @@ def _average(summed: int, number: int, frames: int) -> Average:
     return Average(np.zeros((BLOCKS + 2, summed)), state, np.full(number, np.nan), np.full(number, np.nan))
 
 
-def _picture(parcel: Any, scale: Scale, stage: Stage | None) -> Picture:
-    shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
-    highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
-    if isinstance(parcel, AttractingParcelSet):
-        highest = NEIGHBOURS
-    return Picture(
-        shown,
-        np.zeros(3),
-        np.zeros((shown.size, 3), np.uint16),
-        np.zeros(shown.size, np.uint8),
-        highest,
-        np.zeros(shown.size, np.uint8),
-        *liquid_picture(parcel, scale, stage),
-    )
+def _picture(parcel: Any, scale: Scale, stage: Stage) -> Picture:
+    shown, speed = np.asarray(stage.shown, np.int64), stage.record["speed"]
+    place, plain = np.zeros((shown.size, 3), np.uint16), np.zeros(shown.size, np.uint8)
+    highest = float(speed["high"]) / (1.0 if speed["counted"] else scale.velocity)
+    liquid = liquid_picture(parcel, scale, stage)
+    return Picture(shown, np.zeros(3), place, plain, highest, plain.copy(), *liquid)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.lab.stage import plain
-from atmosbox.page.panel import declared
+from atmosbox.page.panel import declared, plain
 from atmosbox.scene.conversion import to_si
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from atmosbox.engine.liquid.substance import Substance
 from atmosbox.lab.kernels.hygrometer import Hygrometer
 from atmosbox.lab.stage import instrument_of
 from atmosbox.lab.theory_table import finer_at_kinks, theory_at
-from atmosbox.page.frame import POOL, RAIN, SWELLING, places
+from atmosbox.page.frame import SWELLING, places
 from atmosbox.scene.instruments import Leaving, MoistLift
 from atmosbox.scene.instruments.water import _CRITICAL
 from atmosbox.theory.equation_of_state import _CONTACT_SERIES
@@ -137,19 +137,11 @@ def bins_of(setup: Setup, leaving: Leaving) -> Any:
     return fresh.readings(setup.scale, 0)["energy_bnds"]
 
 
-def liquid_picture(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, ...]:
+def liquid_picture(parcel: Any, scale: Scale, stage: Stage) -> tuple[Any, ...]:
     """Return the data for the picture of the liquid: the last fields of `Picture`."""
-    record = None if stage is None else stage.record
-    water = 0 if record is None else int(record["water"])
+    record, water = stage.record, int(stage.record["water"])
     spread = places(water)
     arrays = parcel.arrays()
     drops = len(arrays.book.moisture.drops.record) if arrays.modes.drops else 0
-    return (
-        np.zeros((max(len(spread), drops) + 1, 4), np.float32),
-        np.zeros(1, np.int64),
-        1.0 if record is None else scale.length * float(record["metre"]),
-        water,
-        0.0 if record is None else SWELLING * float(record["species"][-1]["drawn"]),
-        spread,
-        np.array([POOL, RAIN]),
-    )
+    pieces, clump = np.zeros((max(len(spread), drops) + 1, 4), np.float32), float(record["species"][-1]["drawn"])
+    return pieces, np.zeros(1, np.int64), scale.length * float(record["metre"]), water, SWELLING * clump, spread

@@ -8,24 +8,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from atmosbox.engine.core.walls import WALL_NAMES
+from atmosbox.errors import Command, Option, Setting, on_command_line
 from atmosbox.file.variables import known
-from atmosbox.lab.box import LabBox, lab_box, refuse
+from atmosbox.lab.box import LabBox, lab_box
 from atmosbox.lab.drawing import drawing
 from atmosbox.lab.kernels.knobs import can_set_gravity
 from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.memory_image import BASE, Image, arguments, image
 from atmosbox.lab.moist_box import bins_of
-from atmosbox.lab.stage import COLDER, instrument_of, lab_stage, plain, running_panels
+from atmosbox.lab.stage import COLDER, instrument_of, running_panels
 from atmosbox.lab.theory_table import short_run, show_plan, tables
 from atmosbox.lab.wasm_module import SCENES
-from atmosbox.lab.well_box import has_bath
 from atmosbox.page import ROUND
 from atmosbox.page.controls import gauges, knob_controls
 from atmosbox.page.lesson import lesson_of
-from atmosbox.page.panel import declared
-from atmosbox.scene.conversion import declared_unit
+from atmosbox.page.panel import declared, plain
+from atmosbox.scene.conversion import declared_unit, to_si
 from atmosbox.scene.instruments import MOMENTS, Air, Leaving, MoistLift, Nuclei
-from atmosbox.simulation.preparation import Prepared, build, link_start
+from atmosbox.simulation.preparation import Prepared, link_start
 from atmosbox.theory import WATER_MASS_RATIO
 from atmosbox.theory.constants import BOLTZMANN, STANDARD_GRAVITY
 
@@ -54,19 +55,12 @@ _WHOLE = 60.0
 _SOON = 30.0
 """The same for air that turns over, so that rolls are soon seen, and the time that an ascent takes [s]."""
 _TIME = "elapsed_time"
-_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
-_UNDECLARED = {"temperature_of_those_that_left": "K", "moment": "1"}
-"""Units of readings by which the page looks up theory, and which are in no file."""
 _SLOWEST = 0.15
 """Least speed of the longest arrow of the wind, in units of the thermal speed half-way between floor and ceiling."""
 _FIGURES = 4
 """Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
-_KNOBS = (
-    "temperature", "floor_temperature", "ceiling_temperature", "gravity", "altitude", "way", "open_pool", "attraction",
-)  # fmt: skip
 _AT_REST = "layer_temperature_conduction"
 """The temperature of air at rest between the walls of the start; it ends when a knob is turned."""
-_WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
 def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
@@ -84,10 +78,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     >>> plan["frames"], plan["size"] == memory.size, sorted(plan["knobs"])
     (1000, True, ['temperature'])
     """
-    panels, setup = running_panels(prepared), build(prepared)
-    refuse(prepared, setup)
-    stage, fast = lab_stage(prepared, setup, panels)
-    box = lab_box(prepared, setup, stage)
+    box = lab_box(prepared)
+    setup, panels, stage = box.setup, running_panels(prepared), box.stage
     memory = image(arguments(box))
     state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
     found, numbers = _knobs(box)
@@ -97,15 +89,15 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         readings = [each for each in readings if each[0] != "air_pressure"]
     profiles = _profiles(box)
     curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
-    unit = setup.scale.time / _SECONDS[setup.time_unit]
+    unit = setup.scale.time / to_si(1.0, setup.time_unit)
     show_plan(stage.record["panels"], curves, unit)
-    series = {name for name, _, _ in readings} | {name for table in curves for name in table["curves"]}
+    names, theory = [name for name, _, _ in readings], [name for table in curves for name in table["curves"]]
     plan = {
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
             "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
-            "lesson": _lesson(prepared, series, setup, stage.record["panels"]),
+            "lesson": _lesson(prepared, {*names, *theory}, setup, stage.record["panels"]),
         },
         "base": BASE,
         "size": memory.size,
@@ -120,7 +112,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "samples": setup.samples,
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
-        "whole": setup.ends or _against_each_other(panels, {name for name, _, _ in readings}),
+        # whether a graph draws one series against another, so that all their values are sent each time
+        "whole": setup.ends or any({line.x, line.y} <= {*names} - {_TIME} for each in panels for line in each.lines),
         "rate": _rate(setup, _SOON if setup.ends or _has_wind(box) else _WHOLE),
         "time": unit,
         "length": setup.scale.length * stage.record["metre"],
@@ -128,26 +121,25 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         # how the scale of speeds follows the temperature
         "scale": None
         if box.attracts
-        else {"swift": fast, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
+        else {"swift": box.swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
         "ledger": Reading["LEDGER_RESIDUAL"].value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
-        "gauges": [] if box.gauges.running.size else gauges(prepared.settings, [name for name, _, _ in readings]),
+        "gauges": [] if box.gauges.running.size else gauges(prepared.settings, names),
         "profiles": profiles,
         "wind": _wind(box) if _has_wind(box) else None,
         "fixed": _fixed(box),
         "tables": curves,
         "planned": [_AT_REST] if _has_wind(box) else _planned_alone(box),
         "knobs": numbers,
-        "units": {},
+        "units": {
+            name: declared(name, setup.time_unit).unit for name in (*names, *theory) if known(name.partition("[")[0])
+        },
         "command": _command(prepared),
         "link": link_start(prepared),
         "seeded": box.seeded,
         "seed": prepared.settings.seed,
     }
-    names = [name for name, _, _ in readings]
-    names += [name for table in plan["tables"] for name in table["curves"]]
-    plan["units"] = {name: declared(name, setup.time_unit).unit for name in names if known(name.partition("[")[0])}
     return plan, memory, box
 
 
@@ -169,12 +161,6 @@ def _rate(setup: Setup, least: float) -> float:
     return min(whole, crossings * side / speed) if speed > 0.0 else whole
 
 
-def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
-    """Return whether a graph draws one series against another, so that all their values are sent each time."""
-    times = readings - {"elapsed_time"}
-    return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
-
-
 def _drawn(
     found: list[dict[str, Any]], panels: tuple[Panel, ...], measured: list[tuple[str, str, int, int, float]]
 ) -> list[dict[str, Any]]:
@@ -186,15 +172,11 @@ def _drawn(
     drawn -= {name for name, *_ in measured}
     for table in found:
         table["curves"] = {
-            name: [_seen(row) for row in rows] if isinstance(rows[0], list) else rows
+            name: [plain(row, _FIGURES) for row in rows] if isinstance(rows[0], list) else rows
             for name, rows in table["curves"].items()
             if (name in drawn if isinstance(rows[0], list) else any(value is not None for value in rows))
         }
     return found
-
-
-def _seen(row: list[float | None]) -> list[float | None]:
-    return [None if value is None else float(f"{value:.{_FIGURES}g}") for value in row]
 
 
 def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
@@ -211,20 +193,18 @@ def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
     if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
         warm[slice(*box.warmed)] = True
     first, factor = Reading["WALL_TEMPERATURE"].value, _factor("wall_temperature", box)
-    walls = [(f"wall_temperature[{name}]", first + wall, factor) for wall, name in enumerate(_WALLS) if warm[wall]]
+    walls = [(f"wall_temperature[{name}]", first + wall, factor) for wall, name in enumerate(WALL_NAMES) if warm[wall]]
     return found + walls
 
 
 def _absent_readings(box: LabBox) -> set[str]:
     """Return the variables of the water that its instruments measure in other scenes, but not in this one."""
     moisture, water = box.book.moisture, box.gauges.water
-    absent = set() if moisture.reservoir.rain > 0.0 else {"rain_mixing_ratio"}
-    absent |= set() if water.level.size else {"parcel_buoyancy"}  # type: ignore[union-attr]
+    measured = {"rain_mixing_ratio": moisture.reservoir.rain > 0.0, "parcel_buoyancy": water.level.size > 0}
     if box.modes.drops:
         salted = moisture.drops.solute > 0.0
-        absent |= set() if salted.any() else {"salted_drop_radius"}
-        absent |= {"pure_drop_radius"} if salted.all() else set()
-    return absent
+        measured |= {"salted_drop_radius": salted.any(), "pure_drop_radius": not salted.all()}
+    return {name for name, is_so in measured.items() if not is_so}
 
 
 def _planned_alone(box: LabBox) -> list[str]:
@@ -237,22 +217,18 @@ def _planned_alone(box: LabBox) -> list[str]:
 
 def _factor(name: str, box: LabBox) -> float:
     """Return the factor of a variable from the engine's units to SI units, or to the unit of the page."""
-    scale = box.setup.scale
-    if name == _TIME:
-        return scale.time / _SECONDS[box.setup.time_unit]
-    if name.startswith("running_energy"):  # of a single disc
-        return scale.energy
-    if name == "parcel_buoyancy":
-        return STANDARD_GRAVITY
-    if name.endswith("drop_radius"):
-        return scale.length / float(instrument_of(box.setup, Nuclei).width)
-    variable = known(name)
+    scale, nuclei = box.setup.scale, instrument_of(box.setup, Nuclei)
+    own = {
+        _TIME: scale.time / to_si(1.0, box.setup.time_unit), "parcel_buoyancy": STANDARD_GRAVITY, "moment": 1.0,
+        "temperature_of_those_that_left": scale.temperature,
+    }  # fmt: skip
     units = {
         "K": scale.temperature, "Pa": scale.pressure, "m s-1": scale.velocity, "s m-1": 1.0 / scale.velocity,
         "m s-2": scale.acceleration, "m-3": scale.number_density, "J": scale.total_energy, "J-1": 1.0 / scale.energy,
         "s-1": scale.weight / scale.time, "kg kg-1": WATER_MASS_RATIO, "1": 1.0,
+        "m": scale.length / (nuclei.width if nuclei else 1.0),  # radii are those of real drops
     }  # fmt: skip
-    return units[_UNDECLARED[name] if variable is None else variable.units]
+    return own[name] if name in own else units[known(name).units]  # type: ignore[union-attr]
 
 
 def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
@@ -264,12 +240,11 @@ def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dic
         predict["draw"] = drawing(predict["draw"], panels, setup)
     if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
         return found
-    units = {_TIME: _SECONDS[setup.time_unit]}  # all other variables of the page are in SI
-    scaled = [(goal, units.get(goal["name"], 1.0)) for goal in task["reach"]]
-    reach = [
-        goal | {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
-        for goal, by in scaled
-    ]
+    reach = []
+    for goal in task["reach"]:
+        by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
+        scaled = {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
+        reach.append(goal | scaled)
     return found | {"task": {**task, "reach": reach}}
 
 
@@ -277,13 +252,10 @@ def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
     gauges, layers = box.gauges, box.gauges.virial.size
     water: Any = gauges.water
+    shown = ("number_density", "layer_temperature", "layer_pressure", "layer_wind")[: 4 if _has_wind(box) else 3]
+    across = gauges.mixture.mean.size // len(MOMENTS)
     rows = [("speed_probability_density", "speeds", 0, gauges.speeds.size)]
-    rows += [
-        (name, "layers", place * layers, layers)
-        for place, name in enumerate(("number_density", "layer_temperature", "layer_pressure", "layer_wind"))
-        if _has_wind(box) or name != "layer_wind"
-    ]
-    across = gauges.sides.columns if gauges.mixture.moments.size else 0
+    rows += [(name, "layers", place * layers, layers) for place, name in enumerate(shown)]
     rows += [(f"left_gas_share_{name}", "gauges.mixture", place * across, across) for place, name in enumerate(MOMENTS)]
     rows += [("leaving_energy_probability_density", "gauges.water", 0, water.width.size)] if water else []
     found = [
@@ -300,9 +272,8 @@ def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
 def _wind(box: LabBox) -> dict[str, Any]:
     """Return the cells of the wind that is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
     flow: Any = box.gauges.flow
-    rows, columns = flow.high.size, flow.wave.shape[1]
     speed = float(box.setup.scale.velocity)
-    return {"rows": rows, "columns": columns, "factor": speed, "least": _SLOWEST * speed}
+    return {"rows": flow.high.size, "columns": flow.wave.shape[1], "factor": speed, "least": _SLOWEST * speed}
 
 
 def _has_wind(box: LabBox) -> bool:
@@ -313,15 +284,13 @@ def _has_wind(box: LabBox) -> bool:
 
 def _fixed(box: LabBox) -> dict[str, Any]:
     """Return the coordinates that do not change, in SI: the middles of bins, and radii at which theory is drawn."""
-    edges, layers = box.gauges.fast.edges * box.setup.scale.velocity, box.gauges.virial.size
-    found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
-    if layers:
-        height = np.linspace(0.0, float(box.setup.parcel.length[2]), layers + 1) * box.setup.scale.length
-        found["height"] = plain(0.5 * (height[1:] + height[:-1]))
-    sides = box.gauges.sides
-    if sides.columns > 1:
-        edges = np.linspace(0.0, sides.width, sides.columns + 1) * box.setup.scale.length
-        found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
+    gauges, scale = box.gauges, box.setup.scale
+    edges = {
+        "speed": gauges.fast.edges * scale.velocity,
+        "height": np.linspace(0.0, float(box.setup.parcel.length[2]), gauges.parts.rows + 1) * scale.length,
+        "distance": np.linspace(0.0, gauges.sides.width, gauges.sides.columns + 1) * scale.length,
+    }
+    found = {name: plain(0.5 * (each[1:] + each[:-1])) for name, each in edges.items() if each.size > 2}
     leaving, nuclei = (instrument_of(box.setup, kind) for kind in (Leaving, Nuclei))
     found |= {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
     return found if nuclei is None else found | {"radius": plain(nuclei.radius)}
@@ -329,46 +298,40 @@ def _fixed(box: LabBox) -> dict[str, Any]:
 
 def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
-    setup = box.setup
+    setup, scale, driver = box.setup, box.setup.scale, getattr(box.setup.parcel, "driver", None)
+    warming = "warm_bath" if box.attracts and box.gas.bath.rate > 0.0 else "warm_walls"
+    warm = {"kernel": warming, "argument": "kT", "times": BOLTZMANN, "over": scale.energy}
+    # a part of the way, or a height; both are converted to a moment of the ascent
+    lead = {"kernel": "lead", "argument": "towards", "end": float(driver.course.end)} if driver else {}
+    pull = {"kernel": "set_gravity", "argument": "gravity", "everywhere": "gas.box.gravity"}
+    acts: dict[str, dict[str, Any]] = {
+        "temperature": warm, "floor_temperature": warm, "ceiling_temperature": warm, "altitude": lead, "way": lead,
+        "gravity": pull | {"over": scale.acceleration, "rounds": True},
+        "open_pool": {"kernel": "cover_pool", "argument": "share"},
+        "attraction": {"kernel": "attract", "argument": "strength"},
+    }  # fmt: skip
     # a knob of a user's own scene is a function in Python, of which the page knows nothing
-    kept = [knob for knob in setup.knobs if knob.name in _KNOBS and box.prepared.scene in SCENES]
+    kept = [knob for knob in setup.knobs if knob.name in acts and box.prepared.scene in SCENES]
     kept = [knob for knob in kept if knob.name != "gravity" or can_set_gravity(box.modes)]
     numbers: dict[str, Any] = {}
     for knob in kept:
         unit = declared_unit(knob.unit)
         told: dict[str, Any] = {"up": unit.up, "down": unit.down, "offset": unit.offset, "times": 1.0, "over": 1.0}
-        if knob.name.endswith("temperature"):
-            told |= {"kernel": "warm_bath" if box.attracts and has_bath(setup) else "warm_walls", "argument": "kT"}
-            told |= {"times": BOLTZMANN, "over": setup.scale.energy}
-            if knob.leave is not None and box.modes.phases:
-                told |= {"leave": "smooth_walls", "rounds": True}
-            if knob.wall is not None:
-                told["walls"] = {"first": knob.wall, "last": knob.wall + 1}
-        elif knob.name == "gravity":
-            told |= {"kernel": "set_gravity", "argument": "gravity", "over": setup.scale.acceleration, "rounds": True}
-            told["everywhere"] = "gas.box.gravity"
-        elif knob.name == "attraction":
-            told |= {"kernel": "attract", "argument": "strength"}
-        elif knob.name == "open_pool":
-            told |= {"kernel": "cover_pool", "argument": "share"}
-        else:  # a part of the way, or a height; both are converted to a moment of the ascent
-            told |= {"kernel": "lead", "argument": "towards", "end": _end(setup)}
-            if knob.places is not None:
-                heights, shares = knob.places
-                told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}
+        told |= acts[knob.name]
+        if knob.leave is not None and box.modes.phases:
+            told |= {"leave": "smooth_walls", "rounds": True}
+        if knob.wall is not None:
+            told["walls"] = {"first": knob.wall, "last": knob.wall + 1}
+        if knob.places is not None:
+            heights, shares = knob.places
+            told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}
         numbers[knob.name] = told
     return kept, numbers
 
 
-def _end(setup: Setup) -> float:
-    """Return the last moment of the planned ascent."""
-    parcel: Any = setup.parcel
-    return float(parcel.driver.course.end)
-
-
 def _command(prepared: Prepared) -> str:
     """Return the command that starts the same run, with the seed at its end."""
-    changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
-    sets = "".join(f" --set {name}={value}" for name, value in changed.items())
-    engine = f" --engine {prepared.unusual_engine}" if prepared.unusual_engine else ""
-    return f"atmosbox run {prepared.scene}{sets}{engine} --seed {prepared.settings.seed}"
+    sets = (Setting(name, value) for name, value in prepared.settings.changed().items() if name != "seed")
+    engine = [Option("engine", prepared.unusual_engine)] if prepared.unusual_engine else []
+    seed = Option("seed", prepared.settings.seed)
+    return on_command_line(Command("run", (prepared.scene, *sets, *engine, seed)))

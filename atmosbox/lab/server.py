@@ -34,7 +34,6 @@ PORT = 8642
 
 _TRIES = 20
 _ONE_AT_A_TIME = threading.Lock()  # a scene is watched while it builds its box, and must not see another's calls
-_LONGEST = 20_000  # characters of the settings in a request
 _PATIENCE = 20.0  # s that a browser may take to send a request
 
 
@@ -57,8 +56,6 @@ def allowed(host: str | None, origin: str | None) -> bool:
     >>> allowed("evil.example:8642", "http://evil.example:8642")
     False
     """
-    if host is None:
-        return False
     try:
         name = urlsplit(f"//{host}").hostname or ""
         named = name == "localhost" or bool(ipaddress.ip_address(name))
@@ -101,36 +98,24 @@ class Server(socketserver.ThreadingTCPServer):
     daemon_threads = True
 
     def __init__(
-        self,
-        prepared: Prepared,
-        *,
-        port: int | None = None,
-        token: str | None = None,
-        language: str = "auto",
+        self, prepared: Prepared, *, port: int | None = None, token: str | None = None, language: str = "auto"
     ) -> None:
-        self._written = prepared
+        self.written = prepared
         presets = [each.values for each in lesson_of(prepared.module).presets]
         self._texts = [text for values in (prepared.settings.as_dict(), *presets) for text in values.values()]
         self.token = token
         self.document = lab_page(*self._data(prepared), language=language, served=True)
         for number in range(PORT, PORT + _TRIES) if port is None else [port]:
             try:
-                super().__init__((HOST, number), _Answer)
+                return super().__init__((HOST, number), _Answer)
             except OSError as error:
                 problem = error
-            else:
-                return
         if port is None:
             said = f"{PORT} to {PORT + _TRIES - 1}"
             raise SettingError("port", said, "are all in use", "end another program, or give a free ", Option("port"))
         raise SettingError(
             "port", port, "is in use or not allowed", "give another, or leave ", Option("port"), " out for a free one"
         ) from problem
-
-    @property
-    def scene(self) -> str:
-        """The name of the scene."""
-        return self._written.scene
 
     @property
     def address(self) -> str:
@@ -149,18 +134,18 @@ class Server(socketserver.ThreadingTCPServer):
         AtmosboxError
             If a setting is refused, or the box cannot run in a page.
         """
-        checked = type(self._written.settings)
+        checked = type(self.written.settings)
         free = {told.name for told in checked.describe() if told.kind == "str" and not told.choices}
         for name, text in settings.items():  # a text may name a file, and reading it would tell what is in it
             if field_name(name) in free and text not in self._texts:
                 raise SettingError(name, text, "cannot be chosen in the page", Command("live", (Setting(name, text),)))
-        prepared = replace(self._written, settings=checked.from_user(settings))
+        prepared = replace(self.written, settings=checked.from_user(settings))
         _, starts, module, stored = self._data(prepared)
         return json.dumps({"starts": starts, "module": module, "stored": stored})
 
     def _data(self, prepared: Prepared) -> tuple[Any, list[Any], str, str]:
         with _ONE_AT_A_TIME:
-            start, module = served_start(prepared, self._written)
+            start, module = served_start(prepared, self.written)
         return lab_data([start], module, prepared.scene, level=1)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -194,7 +179,7 @@ class _Answer(BaseHTTPRequestHandler):
         if address.path != "/plan":
             return self._send(404, "There is one page here, at /.")
         try:
-            settings = json.loads(asked["settings"][0][:_LONGEST])
+            settings = json.loads(asked["settings"][0])
             if not isinstance(settings, dict):
                 raise TypeError
         except (LookupError, TypeError, ValueError, RecursionError):
@@ -203,7 +188,7 @@ class _Answer(BaseHTTPRequestHandler):
             return self._send(200, self.server.plan(settings), "application/json")
         except AtmosboxError as error:
             if any(isinstance(part, Option) and part.name == "engine" for part in error.remedy):
-                error.remedy = elsewhere(self.server.scene)  # the page has one engine
+                error.remedy = elsewhere(self.server.written.scene)  # the page has one engine
             return self._send(422, error.said(_in_page))
         except Exception as error:
             return self._send(500, f"The box cannot be built ({type(error).__name__}: {error}).")
@@ -238,21 +223,16 @@ def ended(server: Server, opened: Callable[[], None]) -> int:
         Function that is called as soon as the page can be opened.
     """
     came: list[int] = []
-    over = threading.Event()
 
     def end(number: int, frame: object) -> None:
         came.append(number)
-        over.set()
+        threading.Thread(target=server.shutdown).start()  # it waits until the server has ended
 
     before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
-    thread = threading.Thread(target=server.serve_forever, name="atmosbox live", daemon=True)
-    thread.start()
     try:
         opened()
-        while not over.wait(0.5):
-            pass
+        server.serve_forever()
     finally:
-        server.shutdown()
         for number, handler in before.items():
             signal.signal(number, handler)
     return came[0]

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from atmosbox.page import NEIGHBOURS, Box, Stage, stage
+from atmosbox.file.molecules import Molecules
+from atmosbox.page import NEIGHBOURS, Stage, stage
 from atmosbox.page.lesson import lesson_of
+from atmosbox.page.panel import declared, panel_record
 from atmosbox.page.word import card_of
-from atmosbox.scene.conversion import phrase
-from atmosbox.scene.instruments import wall_laws
+from atmosbox.scene import instruments
 from atmosbox.scene.panels import without_headlines
-from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
 
 if TYPE_CHECKING:
@@ -26,22 +27,11 @@ if TYPE_CHECKING:
 COLDER = 0.5
 """Share of the scale of speeds: if the speeds reach less of it, the page takes another scale."""
 
-_FASTEST = 3.0
+_FASTEST, _STEPS = 3.0, 60
+"""The highest speed of the scale, over that of kT = m; and number of speeds that are tried for a mixture."""
 _TIME = "elapsed_time"
 
 Array = NDArray[np.float64]
-
-
-def plain(values: ArrayLike) -> list[float | None]:
-    """Return numbers as JSON can hold them, with seven digits; numbers that are not finite become null.
-
-    Examples
-    --------
-    >>> plain([1.0, math.nan, 1.0 / 3.0])
-    [1.0, None, 0.3333333]
-    """
-    numbers = np.atleast_1d(np.asarray(values, np.float64)).ravel()
-    return [float(f"{x:.7g}") if math.isfinite(x) else None for x in numbers.tolist()]
 
 
 def instrument_of(setup: Setup, kind: type) -> Any:
@@ -73,48 +63,38 @@ def _running(panel: Panel) -> Panel | None:
 def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tuple[Stage, float]:
     """Return what a page shows of a box, and `_swift` of its molecules in m s-1 K-1/2."""
     parcel: Any = setup.parcel
-    scale, module, settings = setup.scale, prepared.module, prepared.settings
-    present = parcel.present
-    mass, diameter = np.full((2, present.size), math.nan)
-    mass[present] = parcel.mass * scale.mass
-    diameter[present] = parcel.diameter * scale.length
-    water = None
-    if hasattr(parcel, "vapour"):
-        mass[~present] = WATER.molecule_mass  # only molecules of water ever leave the gas
-        diameter[~present] = float(np.nanmax(diameter)) if present.any() else DRY_AIR.diameter
-        water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
-    fast = _swift(mass / scale.mass)
-    counted = hasattr(parcel, "neighbours")  # colours show neighbours, because speeds do not show drops
+    scale, module = setup.scale, prepared.module
+    all_of_them = instruments.Molecules(setup.right)
+    all_of_them.end_frame(parcel, parcel.snapshot())
+    told = all_of_them.readings(scale, 0)
+    seen = Molecules(
+        discs=any(panel.kind == "discs" for panel in panels),
+        time=np.zeros(1),
+        **{name: told[f"molecule_{name}"] for name in ("position", "speed", "mass", "diameter")},
+        water=told["species"] == 1 if "species" in told else None,
+        side=told["box_side"],
+        walls=instruments.wall_laws(parcel),
+        wall_temperature=parcel.wall_kT()[None] * scale.temperature,
+        planar=parcel.planar,
+        gravity=parcel.gravity > 0.0,
+        drops=told.get("drop_position"),
+        neighbours=told.get("molecule_neighbour_count"),  # shown as colours, because speeds do not show drops
+        right=setup.right,
+    )
+    fast = _swift(np.asarray(seen.mass, np.float64) / scale.mass)
+    tell = functools.partial(declared, time_unit=setup.time_unit)
     made = stage(
-        scene=prepared.scene,
+        seen,
         title=str(getattr(module, "title", prepared.scene)),
         story=lesson_of(module).story or (module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
-        facts=list(setup.facts.items()),
-        settings=[(p.name, _said(getattr(settings, p.name), p.unit)) for p in settings.describe()],
-        version=__version__,
-        seed=settings.seed,
-        engine=str(prepared.engine),
-        box=Box(
-            length=tuple(float(side) * scale.length for side in parcel.length),  # type: ignore[arg-type]
-            walls=wall_laws(parcel),
-            wall_temperature=tuple(
-                float(each) * scale.temperature if math.isfinite(each) else None for each in parcel.wall_kT()
-            ),
-            planar=parcel.planar,
-            gravity=parcel.gravity > 0.0,
-        ),
-        mass=mass,
-        diameter=diameter,
-        water=water,
-        drops=hasattr(parcel, "drops"),
-        right=setup.right,
         time_unit=setup.time_unit,
-        fastest=NEIGHBOURS if counted else fast * math.sqrt(_warmest(setup)) * scale.velocity,
-        panels=panels,
-        discs=any(panel.kind == "discs" for panel in panels),
-        counted=counted,
+        fastest=NEIGHBOURS if seen.neighbours is not None else fast * math.sqrt(_warmest(setup)) * scale.velocity,
+        panels=[panel_record(each, tell) for each in panels if each.kind != "discs"],
     )
-    made.record["card"] = card_of(module.__doc__ or "")
+    made.record.update(
+        scene=prepared.scene, seed=prepared.settings.seed, engine=str(prepared.engine), version=__version__,
+        card=card_of(module.__doc__ or ""),
+    )  # fmt: skip
     return made, fast * scale.velocity / math.sqrt(scale.temperature)
 
 
@@ -138,16 +118,6 @@ def _swift(mass: Array) -> float:
     known = mass[np.isfinite(mass)]
     if not known.size:
         return _FASTEST
-    low, high = 1.0 / known.max(), 1.0 / known.min()
-    while high - low > 1e-9 * high:
-        middle = 0.5 * (low + high)
-        rare = np.exp(-0.5 * _FASTEST**2 * middle * known).mean() < math.exp(-0.5 * _FASTEST**2)
-        low, high = (low, middle) if rare else (middle, high)
-    return _FASTEST * math.sqrt(high)
-
-
-def _said(value: object, unit: str) -> str:
-    """Return the value of a setting as text for the caption."""
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    return str(value) if isinstance(value, str) else phrase(value, unit)  # type: ignore[arg-type]
+    inverse = np.geomspace(1.0 / known.max(), 1.0 / known.min(), _STEPS)
+    share = [float(np.exp(-0.5 * _FASTEST**2 * each * known).mean()) for each in inverse]
+    return _FASTEST * math.sqrt(np.interp(-math.exp(-0.5 * _FASTEST**2), np.negative(share), inverse))

@@ -14,8 +14,7 @@ from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.start.overlap import bins_of, spheres_of
-from atmosbox.lab.kernels.pairwise import DEPTH
-from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start, can_start
+from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start
 
 
 def is_drawn(parcel: Any) -> bool:
@@ -24,18 +23,13 @@ def is_drawn(parcel: Any) -> bool:
     It cannot if the scene does not declare the start, or gives the places of the molecules.
     """
     modes, start = parcel.arrays().modes, parcel.start
-    if (
-        start is None
-        or not parcel.number
-        or not can_start(modes)
-        or (modes.gravity and (modes.mixed or not modes.rows))
-    ):
+    if start is None or not parcel.number or (modes.gravity and (modes.mixed or not modes.rows)):
         return False
     return not any(isinstance(p, Placed) or (isinstance(p, Rotating) and np.ndim(p.kT)) for p in start.parts)
 
 
-def start_of(parcel: Any, layout: Any) -> Start | None:
-    """Return the data of the kernel ``start`` of a box; None if its module has no such kernel.
+def start_of(parcel: Any, layout: Any) -> Start:
+    """Return the data of the kernel ``start`` of a box.
 
     Nothing is drawn in a box whose start a page cannot draw: the kernel needs the data only to be loaded.
 
@@ -46,8 +40,6 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
     [1, 0]
     """
     arrays = parcel.arrays()
-    if not can_start(arrays.modes):
-        return None
     declared = parcel.start if is_drawn(parcel) else Declared(parcel.number, ())
     given: dict[str, Any] = {part.draws: part for part in declared.parts}
     places, moving = given.get("position", Scattered()), given.get("velocity", Maxwell(0.0))
@@ -67,7 +59,6 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
         parts=np.array([DRAWN.index(part.draws) for part in declared.parts], np.int64),
         numbered=NUMBERED.index(places.numbered),
         scale_height=float(places.scale_height or 0.0),
-        planar=int(planar),
         speed=float(moving.speed) if equal else 0.0,
         twice=(2.0 if planar else 3.0) * float(kT.sum()) if exact else 0.0,
         weight=float(mass.sum()),
@@ -87,9 +78,6 @@ def start_of(parcel: Any, layout: Any) -> Start | None:
         velocity=np.zeros((n, 3)),
         key=np.zeros(3 * n + 1),
         rank=np.zeros(n, np.int64),
-        other=np.zeros(n, np.int64),
-        waiting=np.zeros((DEPTH, 2), np.int64),
-        partial=np.zeros(DEPTH),
         state=np.zeros(1, np.uint64),
     )
 
@@ -106,8 +94,8 @@ def _spread(parcel: Any, sides: NDArray[np.float64]) -> NDArray[np.float64]:
 def _warm(parcel: Any) -> float:
     """Return a speed of molecules that leave the warmest wall; 0 in a box without liquid: see `MoistParcelSet`."""
     arrays = parcel.arrays()
-    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
-    return math.sqrt(8.0 * max(baths, default=0.0) / arrays.substance.mass) if arrays.modes.phases else 0.0
+    warmest = float(np.nanmax([0.0, *parcel.wall_kT()]))
+    return math.sqrt(8.0 * warmest / arrays.substance.mass) if arrays.modes.phases else 0.0
 
 
 def _first_gauges(parcel: Any) -> Any:

@@ -10,15 +10,16 @@ from __future__ import annotations
 import gzip
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import product
 from typing import Any, NamedTuple
 
 from atmosbox.errors import AtmosboxError
 from atmosbox.lab.plan import lab_plan
 from atmosbox.lab.wasm_module import module_bytes
-from atmosbox.page.controls import setting_controls
+from atmosbox.page.controls import control, setting_controls
 from atmosbox.page.lesson import lesson_of
-from atmosbox.scene.settings import Parameter
+from atmosbox.scene.conversion import phrase
 from atmosbox.simulation.preparation import Prepared, prepare
 
 AS_WRITTEN = "as the page was written"
@@ -196,15 +197,10 @@ def _offered(prepared: Prepared, *, seeded: bool) -> dict[str, list[str]]:
         if told.name == "molecules":
             found[told.name] = [str(now), *(str(round(times * now)) for times in _TIMES)]
         elif told.name == meeting:
-            found[told.name] = [_said(value, told) for value in (now, *(float(f"{t * now:.2g}") for t in _WIDER))]
+            found[told.name] = [phrase(value, told.unit) for value in (now, *(float(f"{t * now:.2g}") for t in _WIDER))]
         elif told.name == "seed" and not seeded:
             found[told.name] = [str(now + k) for k in range(_SEEDS + 1)]
     return found
-
-
-def _said(value: float, told: Parameter) -> str:
-    """Return a value with its unit as text."""
-    return f"{value:g} {told.unit}" if told.unit != "1" else f"{value:g}"
 
 
 def _others(prepared: Prepared, offered: dict[str, list[str]]) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -224,7 +220,7 @@ def _others(prepared: Prepared, offered: dict[str, list[str]]) -> Iterator[tuple
 
 def _offer(prepared: Prepared, made: list[Start], presets: list[str]) -> None:
     """Add to the plan of each start the controls that lead to the others."""
-    words = {told.name: told.help for told in prepared.settings.describe()}
+    parameters = {told.name: told for told in prepared.settings.describe()}
     for start in made:
         told = start.plan["told"]
         told["lesson"]["presets"] = [AS_WRITTEN, *presets] if presets else []
@@ -232,18 +228,11 @@ def _offer(prepared: Prepared, made: list[Start], presets: list[str]) -> None:
         for name, value in start.plan["start"].items():
             values = {each.plan["start"][name] for each in made if each.key not in presets}
             if len(values) > 1:
-                told["controls"].append(
-                    {
-                        "name": name,
-                        "label": f"number of {particles}" if name == "molecules" else words[name],
-                        "unit": "",
-                        "kind": "choice",
-                        "choices": sorted(values, key=lambda each: float(each.split()[0])),
-                        "value": value,
-                        "restarts": True,
-                        "help": f"{particles if name == 'molecules' else name}: changing it restarts the box",
-                    }
-                )
+                choices = tuple(sorted(values, key=lambda each: float(each.split()[0])))
+                label = f"number of {particles}" if name == "molecules" else parameters[name].help
+                choice = replace(parameters[name], unit="", kind="str", choices=choices, help=label)
+                help = f"{particles if name == 'molecules' else name}: changing it restarts the box"
+                told["controls"].append(control(choice, value, restarts=True) | {"help": help})
 
 
 def _content(memory: Any) -> bytes:

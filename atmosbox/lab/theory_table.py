@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError, Setting, SettingError
-from atmosbox.lab.stage import instrument_of, plain
+from atmosbox.lab.stage import instrument_of
 from atmosbox.lab.wasm_module import elsewhere
+from atmosbox.page.panel import plain
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, Lift, MoistLift
 from atmosbox.simulation.preparation import Prepared, build
@@ -56,10 +57,8 @@ def short_run(prepared: Prepared) -> xr.Dataset:
     """
     setup = build(prepared)
     parcel: Any = setup.parcel
-    modes, run = (
-        parcel.arrays().modes,
-        Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)}),
-    )
+    modes = parcel.arrays().modes
+    run = Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
     try:
         for _ in range(_FRAMES):
             run.advance(lambda passed: None)
@@ -67,14 +66,11 @@ def short_run(prepared: Prepared) -> xr.Dataset:
         raise EngineError(f"The box of {prepared.scene} cannot begin: {error}.") from error
     if parcel.arrays().modes != modes:
         raise SettingError(
-            "scene",
-            prepared.scene,
+            "scene", prepared.scene,
             "has so many molecules in one place that the memory of the page is too small for them",
             "give it fewer molecules, begin it where it comes to rest, as atmosphere with ",
-            Setting("start", "equilibrium"),
-            ", or ",
-            *elsewhere(prepared.scene),
-        )
+            Setting("start", "equilibrium"), ", or ", *elsewhere(prepared.scene)
+        )  # fmt: skip
     found, _ = run.dataset("lab", settle=0, judged=False)
     return found
 
@@ -141,12 +137,12 @@ def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[st
 
 def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
     """Return the curves of theory as functions of the temperature of the walls."""
-    curves: dict[str, list[Any]] = {}
-    grid = _range(knob)
-    for kelvin in grid.tolist():
-        here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
-        for name, values in prepared.module.theory(here, prepared.settings).items():
-            curves.setdefault(name, []).append(_last(values, found))
+    grid, walls = _range(knob), found.wall_temperature
+    rows = [
+        prepared.module.theory(found.assign(wall_temperature=walls.where(walls.isnull(), kelvin)), prepared.settings)
+        for kelvin in grid.tolist()
+    ]
+    curves = {name: [_last(row[name], found) for row in rows] for name in rows[0]}
     return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
 
 
@@ -234,13 +230,12 @@ def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
 def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
     """Return the energy distributions of molecules that leave and that stay, by the temperature of the liquid."""
     grid = np.linspace(_COLDEST, _WARMEST, _WARMTHS)
-    curves: dict[str, list[Any]] = {}
-    ones = np.ones(found.sizes["elapsed_time"])
+    ones, rows = np.ones(found.sizes["elapsed_time"]), []
     for kelvin in grid:
         here = found.assign(liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones))
-        for name, values in prepared.module.theory(here, prepared.settings).items():
-            if np.shape(values) == found.energy.shape:
-                curves.setdefault(name, []).append(plain(values))
+        rows.append(prepared.module.theory(here, prepared.settings))
+    names = [name for name, values in rows[0].items() if np.shape(values) == found.energy.shape]
+    curves = {name: [plain(row[name]) for row in rows] for name in names}
     return {"along": "temperature_of_those_that_left", "grid": plain(grid), "curves": curves}
 
 
@@ -343,7 +338,7 @@ def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, An
             for axis, values in points.items():
                 panel["planned"][axis] += values
             if panel["kind"] == "atmosphere":
-                line["planned"] = {"moment": [float(f"{each:.5g}") for each in way["moment"]], "y": points["y"]}
+                line["planned"] = {"moment": plain(way["moment"], 5), "y": points["y"]}
             elif panel["across"] and line["role"] in _KNOWN:
                 line["planned"] = points
 
@@ -372,7 +367,6 @@ def _between(table: Mapping[str, Any], name: str, places: Array) -> Array:
     return found
 
 
-def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float]:
+def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float | None]:
     """Return the values of a variable along the ascent, in the unit of its axis."""
-    values = way.get(axis["name"], np.zeros(0)) * axis["factor"] + axis["offset"]
-    return [float(f"{value:.5g}") for value in values]
+    return plain(way.get(axis["name"], np.zeros(0)) * axis["factor"] + axis["offset"], 5)

@@ -11,12 +11,11 @@ from atmosbox import theory as law
 from atmosbox.engine.core.state import EVENT, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.wells.vicinity import new_vicinity
+from atmosbox.engine.wells.well_advance import Lists
 from atmosbox.engine.wells.well_events import WellGas
-from atmosbox.lab.kernels.attracting import Lists
 from atmosbox.lab.kernels.clustering import Crowd
 from atmosbox.lab.stage import instrument_of
 from atmosbox.scene.instruments import Clusters
-from atmosbox.scene.instruments.condensate import CROWDED
 from atmosbox.scene.setup import Setup
 
 _LONGER = 4
@@ -39,27 +38,20 @@ def well_gas(parcel: Any) -> WellGas:
 
 
 def lists(parcel: Any) -> Lists:
-    """Return the lengths of the lists of neighbours, and the full depths of the wells."""
-    arrays = parcel.arrays()
-    stride = arrays.gas.vicinity.stride
-    due = np.zeros(1, np.int64)
-    return Lists(np.array([stride]), due, arrays.full_depth, np.array([parcel.strength]), np.zeros(1))
+    """Return the lengths of the lists of neighbours."""
+    return Lists(np.array([parcel.arrays().gas.vicinity.stride]), np.zeros(1, np.int64))
 
 
 def crowd(setup: Setup) -> Crowd:
     """Return the data of the drops at the start, without any drop."""
-    number = setup.parcel.number
+    parcel: Any = setup.parcel
     clusters = instrument_of(setup, Clusters) or Clusters(0)
+    wells, drop, size = (np.zeros(parcel.number, np.int64) for _ in range(3))
     return Crowd(
-        members=clusters.molecules,
-        crowded=CROWDED,
-        wells=np.zeros(number, np.int64),
-        drop=np.zeros(number, np.int64),
-        size=np.zeros(number, np.int64),
-        liquid=clusters.liquid,
-        virial=np.zeros(1),
-        gas_law=_gas_law(),
-    )
+        members=clusters.molecules, wells=wells, drop=drop, size=size, liquid=clusters.liquid, virial=np.zeros(1),
+        gas_law=_gas_law(), full_depth=parcel.arrays().full_depth, strength=np.array([parcel.strength]),
+        work=np.zeros(1),
+    )  # fmt: skip
 
 
 def _gas_law() -> NDArray[np.float64]:
@@ -76,8 +68,3 @@ def _gas_law() -> NDArray[np.float64]:
     warmth = 1.0 / np.log1p(x)
     told = np.stack([law.square_well_second_virial(warmth), law.square_well_third_virial(warmth)])
     return np.ascontiguousarray(np.linalg.solve(np.vander(x, _POWERS, increasing=True), told.T).T)
-
-
-def has_bath(setup: Setup) -> bool:
-    """Return whether a random bath, and not walls, keeps the molecules at a temperature."""
-    return float(setup.parcel.arrays().gas.bath.rate) > 0.0  # type: ignore[attr-defined]

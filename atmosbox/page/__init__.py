@@ -8,6 +8,6 @@ libraries that draw the page, and the one that makes QR codes.
 
 from atmosbox.page.document import lab_page, view_page
 from atmosbox.page.saved_run import save
-from atmosbox.page.stage import NEIGHBOURS, ROUND, Box, Stage, round_up, stage
+from atmosbox.page.stage import NEIGHBOURS, ROUND, Stage, round_up, stage
 
-__all__ = ["NEIGHBOURS", "ROUND", "Box", "Stage", "lab_page", "round_up", "save", "stage", "view_page"]
+__all__ = ["NEIGHBOURS", "ROUND", "Stage", "lab_page", "round_up", "save", "stage", "view_page"]

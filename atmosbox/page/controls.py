@@ -44,11 +44,8 @@ _STEPS = 200
 
 def knob_controls(knobs: Iterable[Knob]) -> list[dict[str, Any]]:
     """Return the sliders of knobs, as data for the page."""
-    found = []
-    for knob in knobs:
-        told = Parameter(knob.name, knob.unit, knob.value, knob.low, knob.high, None, knob.help, "float")
-        found.append(_record(told, knob.value, restarts=False))
-    return found
+    given = [(Parameter(k.name, k.unit, k.value, k.low, k.high, None, k.help, "float"), k.value) for k in knobs]
+    return [control(told, value, restarts=False) for told, value in given]
 
 
 def setting_controls(
@@ -57,13 +54,13 @@ def setting_controls(
     """Return sliders, switches and choices for settings, without free texts and those named in ``without``."""
     left_out = set(without)
     return [
-        _record(told, values[told.name], restarts=True)
+        control(told, values[told.name], restarts=True)
         for told in parameters
         if told.name not in left_out and (told.kind != "str" or told.choices)
     ]
 
 
-def _record(told: Parameter, value: Value, *, restarts: bool) -> dict[str, Any]:
+def control(told: Parameter, value: Value, *, restarts: bool) -> dict[str, Any]:
     """Return one control as data for the page."""
     kind = {"bool": "switch", "str": "choice"}.get(told.kind, "number")
     made: dict[str, Any] = {

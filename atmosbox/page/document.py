@@ -144,7 +144,6 @@ def _document(
         "THEME": theme,
         "ENTRY": entry,
         "CONNECT": "'self'" if served else "'none'",
-        "KIND": entry,
         "ALSO": " 'wasm-unsafe-eval'" if entry == "lab" else "",
         "STYLE": "\n".join((_text("vendor", "uplot", "uPlot.min.css"), _text("web", "theme.css"))),
         "UPLOT": _inline(_text("vendor", "uplot", "uPlot.iife.min.js")),

@@ -39,17 +39,9 @@ def encode(
     share = np.where(absent[:, None], 0.0, position / np.asarray(length, np.float64))
     place = np.rint(np.clip(share, 0.0, 1.0) * _FINEST).astype("<u2")
     colour = np.rint(np.clip(np.where(absent, 0.0, speed) / highest, 0.0, 1.0) * _FASTEST).astype(np.uint8)
-    sides = [float(side) for side in length]
-    return b"".join(
-        (
-            _HEAD.pack(sequence, time, *sides, len(place), highest),
-            place.tobytes(),
-            colour.tobytes(),
-            absent.astype(np.uint8).tobytes(),
-            struct.pack("<I", len(drops)),
-            np.asarray(drops, "<f4").tobytes(),
-        )
-    )
+    head = _HEAD.pack(sequence, time, *(float(side) for side in length), len(place), highest)
+    parts = place, colour, absent.astype(np.uint8), np.array([len(drops)], "<u4"), np.asarray(drops, "<f4")
+    return head + b"".join(part.tobytes() for part in parts)
 
 
 def pack(frames: Iterable[bytes]) -> str:

@@ -41,14 +41,12 @@ from atmosbox.file.variables import variable
 from atmosbox.scene.conversion import converted, from_si, number_and_unit
 
 SUFFIX = ".live.toml"
-_KNOWN = {
-    "preset": {"title", "set"},
-    "predict": {"ask", "choices", "right", "why"},
-    "task": {"ask", "hint", "reach", "frames"},
+_KNOWN: dict[str, tuple[set[str], set[str]]] = {
+    "preset": ({"title", "set"}, set()),
+    "predict": ({"ask", "choices", "right", "why"}, {"draw"}),
+    "task": ({"ask", "hint", "reach", "frames"}, set()),
 }
-
-
-_MAY = {"predict": {"draw"}}
+"""What the entries of each kind have, and what they may have besides."""
 
 
 @dataclass(frozen=True)
@@ -110,10 +108,10 @@ def lesson_of(module: ModuleType) -> Lesson:
 
 def _entries(path: Path, entries: Any, kind: str) -> list[dict[str, Any]]:
     """Return the entries of a kind; refuse one that lacks something or has something else."""
+    must, may = _KNOWN[kind]
     for number, entry in enumerate(entries if isinstance(entries, list) else [None], 1):
-        may = _MAY.get(kind, set())
-        if not isinstance(entry, dict) or not _KNOWN[kind] <= set(entry) <= _KNOWN[kind] | may:
-            wanted = ", ".join([*sorted(_KNOWN[kind]), *(f"may have {name}" for name in may)])
+        if not isinstance(entry, dict) or not must <= set(entry) <= must | may:
+            wanted = ", ".join([*sorted(must), *(f"may have {name}" for name in may)])
             raise ConfigError(f"{path}: {kind} {number} must have {wanted}, and nothing else.")
     return list(entries)
 

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from atmosbox.file.variables import known
+from atmosbox.scene.conversion import spelled
 from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
+
+
+def plain(values: ArrayLike, figures: int = 7) -> list[float | None]:
+    """Return numbers as JSON can hold them, with some significant digits; numbers that are not finite become null.
+
+    Examples
+    --------
+    >>> plain([1.0, math.nan, 1.0 / 3.0])
+    [1.0, None, 0.3333333]
+    """
+    numbers = np.atleast_1d(np.asarray(values, np.float64)).ravel()
+    return [float(f"{x:.{figures}g}") if math.isfinite(x) else None for x in numbers.tolist()]
 
 
 class Meaning(NamedTuple):
@@ -51,16 +66,15 @@ def panel_record(
     >>> panel_record(Panel("line", "Temperature", (air,), y_unit="degC"), declared)["lines"][0]["y"]
     {'name': 'air_temperature', 'factor': 1.0, 'offset': -273.15}
     """
-    from atmosbox.plot.curve import spelled
-
     first = panel.lines[0]
-    shown = {
-        "x": panel.x_unit or meaning(first.x).unit,
-        "y": panel.y_unit or meaning(first.y).unit,
-    }
     measured = "x" if panel.measured_across else "y"
-    labels = {"x": panel.x_label or meaning(first.x).words, "y": panel.y_label or meaning(first.y).words}
-    scales = {"x": (panel.x_scale, panel.x_invert), "y": (panel.y_scale, panel.y_invert)}
+    shown, axes = {}, {}
+    for axis in ("x", "y"):
+        label, unit, scale, invert = (getattr(panel, f"{axis}_{part}") for part in ("label", "unit", "scale", "invert"))
+        means = meaning(getattr(first, axis))
+        shown[axis] = unit or means.unit
+        axes[axis] = {"label": label or means.words, "unit": spelled(shown[axis])}
+        axes[axis] |= {"log": scale == "log", "invert": invert}
     return {
         "kind": panel.kind,
         "title": panel.title,
@@ -74,26 +88,16 @@ def panel_record(
         "guides": [list(guide) for guide in panel.guides],
         "limits": {"x": list(panel.x_limits), "y": list(panel.y_limits)},
         "areas": panel.areas,
-        **{
-            axis: {
-                "label": labels[axis],
-                "unit": spelled(shown[axis]),
-                "log": scales[axis][0] == "log",
-                "invert": scales[axis][1],
-            }
-            for axis in ("x", "y")
-        },
+        **axes,
         "lines": [_line_record(line, shown, measured, meaning) for line in panel.lines],
     }
 
 
 def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Callable[[str], Meaning]) -> dict[str, Any]:
     """Return a line of a panel; each variable has the factor and the offset that give the unit shown."""
-    from atmosbox.plot.curve import WORST
+    from atmosbox.plot.curve import WORST, convert
 
     def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
-        from atmosbox.plot.curve import convert
-
         zero, one = convert(np.array([0.0, 1.0]), meaning(name).unit, unit, name=name, difference=difference)
         return {"name": name, "factor": float(f"{one - zero:.12g}"), "offset": float(f"{zero:.12g}")}
 

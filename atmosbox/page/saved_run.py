@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,8 +18,8 @@ from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.file.provenance import parameters
 from atmosbox.page.document import LANGUAGES, THEMES, view_page
 from atmosbox.page.frame import pack
-from atmosbox.page.panel import Meaning, declared, names
-from atmosbox.page.stage import NEIGHBOURS, Box, Stage, page_box, share, stage
+from atmosbox.page.panel import Meaning, declared, names, panel_record, plain
+from atmosbox.page.stage import NEIGHBOURS, share, stage
 from atmosbox.page.word import changed, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
 
@@ -61,67 +62,49 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
 
     room = share(seen.position.shape[1], len(seen.time), runs)
     kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
-    panels, marks, sentences = _graphs(dataset)
-    made, box = parameters(dataset), page_box(seen)
-    scene, seed = str(made.get("scene", "")), made.get("settings", {}).get("seed")
+    panels, graphs = _graphs(dataset)
+    scene = str(parameters(dataset).get("scene", ""))
     told = stage(
-        scene=scene,
+        seen,
         title=str(dataset.attrs.get("title", scene)),
         story=story_of(dataset),
         settings=settings_of(dataset),
-        version=str(dataset.attrs.get("product_version", "")),
-        seed=None if seed is None else int(seed),
-        engine=str(made.get("engine", "exact")),
-        box=box,
-        mass=seen.mass,
-        diameter=seen.diameter,
-        water=seen.water,
-        drops=seen.drops is not None,
-        right=seen.right,
         fastest=fastest,
         time_unit=str(dataset["elapsed_time"].attrs.get("units", "ns")),
-        panels=panels,
+        panels=graphs,
         most=room.molecules,
-        discs=seen.discs,
-        counted=seen.neighbours is not None,
-        meaning=lambda name: _meaning(dataset, name),
-        sentences=sentences,
-        marks=marks,
     )
     record = {
         "stage": told.record,
         "heading": heading,
         "footer": footer(dataset),
         "notes": notes(seen, told.record, frames=len(kept)),
-        **_values(dataset, panels, box),
+        **_values(dataset, panels, seen.walls),
     }
-    return Page(record, list(_frames(told, seen, kept)))
-
-
-def _frames(told: Stage, seen: Molecules, kept: NDArray[np.int_]) -> Iterator[bytes]:
-    """Yield the frames whose indices are in ``kept``, as bytes."""
-    for sequence, index in enumerate(kept):
-        yield told.frame(
+    shown = seen.speed if seen.neighbours is None else seen.neighbours
+    frames = [
+        told.frame(
             sequence,
             float(seen.time[index]),
             seen.side[index],
             seen.position[index],
-            (seen.speed if seen.neighbours is None else seen.neighbours)[index],
+            shown[index],
             drops=None if seen.drops is None else seen.drops[index],
             liquid=0 if seen.liquid is None else int(seen.liquid[index]),
             rained=0 if seen.rained is None else int(seen.rained[index]),
         )
+        for sequence, index in enumerate(kept)
+    ]
+    return Page(record, frames)
 
 
-def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str, float]], list[list[str]]]:
-    """Return the panels for which the file has data, the levels that they mark, and their headline sentences."""
-    from dataclasses import replace
-
+def _graphs(dataset: xr.Dataset) -> tuple[list[Panel], list[dict[str, Any]]]:
+    """Return the panels for which the file has data; and the same, with their headline sentences, for the page."""
     from atmosbox.plot.caption import headlines
     from atmosbox.plot.skewt import levels
 
     if "atmosbox_panels" not in dataset.attrs:
-        return (), {}, []
+        return [], []
     try:
         stated = from_json(dataset.attrs["atmosbox_panels"])
     except ValueError as error:
@@ -131,9 +114,12 @@ def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str,
         lines = tuple(line for line in panel.lines if all(_held(dataset, name) for name in line.variables))
         if lines and panel.kind != "discs":
             panels.append(replace(panel, lines=lines))
-    marks = {number: levels(dataset, panel) for number, panel in enumerate(panels) if panel.kind == "skewt"}
-    told = headlines(dataset, tuple(panels))
-    return tuple(panels), marks, [[reading.sentence for reading in each] for each in told]
+    graphs = []
+    for panel, told in zip(panels, headlines(dataset, tuple(panels)), strict=True):
+        marks = levels(dataset, panel) if panel.kind == "skewt" else {}
+        sentences = [each.sentence for each in told]
+        graphs.append(panel_record(panel, partial(_meaning, dataset), sentences=sentences, marks=marks))
+    return panels, graphs
 
 
 def _held(dataset: xr.Dataset, name: str) -> bool:
@@ -142,12 +128,12 @@ def _held(dataset: xr.Dataset, name: str) -> bool:
     return name in dataset.variables and bool(dataset[name].notnull().any())
 
 
-def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str, Any]:
+def _values(dataset: xr.Dataset, panels: Sequence[Panel], laws: Sequence[str]) -> dict[str, Any]:
     """Return the values of the graphs by name, and the names of the variables that are functions of time."""
     from atmosbox.plot.curve import read
 
     walls = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
-    warm = [f"wall_temperature[{wall}]" for wall, law in zip(walls, box.walls, strict=True) if law == "heat_bath"]
+    warm = [f"wall_temperature[{wall}]" for wall, law in zip(walls, laws, strict=True) if law == "heat_bath"]
     values: dict[str, Any] = {}
     timed: list[str] = []
     for name in dict.fromkeys(("elapsed_time", *names(panels), *warm)):
@@ -157,15 +143,10 @@ def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str,
         if variable.ndim > 1:
             raise FileError(f"The variable {name!r} of the file has {variable.ndim} dimensions, and a graph needs one.")
         figures = _TIME_FIGURES if name == "elapsed_time" else _FIGURES
-        values[name] = [_figure(value, figures) for value in np.atleast_1d(variable.values)]
+        values[name] = plain(variable.values, figures)
         if variable.dims == ("elapsed_time",):
             timed.append(name)
     return {"values": values, "timed": timed}
-
-
-def _figure(value: float, figures: int) -> float | None:
-    """Return a number rounded to some significant digits; None if it is not finite."""
-    return float(f"{value:.{figures}g}") if math.isfinite(value) else None
 
 
 def _meaning(dataset: xr.Dataset, name: str) -> Meaning:

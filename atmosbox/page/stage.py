@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections import namedtuple
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.file.molecules import Molecules
 from atmosbox.page.frame import clumps, encode, layer
-from atmosbox.page.panel import Meaning, declared, names, panel_record
-from atmosbox.scene.panels import Panel
+from atmosbox.page.panel import plain
 from atmosbox.theory.constants import DRY_AIR
 
 MOST = 5000
@@ -25,11 +24,8 @@ _ENOUGH = 240  # frames; a page with fewer would rather leave out molecules
 Indices = NDArray[np.intp]
 
 
-class Share(NamedTuple):
+class Share(namedtuple("Share", "molecules frames")):
     """Numbers of molecules and frames of a run that a page holds."""
-
-    molecules: int
-    frames: int
 
 
 def share(molecules: int, frames: int, runs: int = 1) -> Share:
@@ -68,66 +64,21 @@ def _even(count: int, most: int) -> Indices:
 
 
 _UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
-_WALLS = 6
 
 
-@dataclass(frozen=True)
-class Box:
-    """The box at its start.
-
-    Parameters
-    ----------
-    length : (axis,)
-        Its three sides [m].
-    walls : (wall,)
-        The law of each wall: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
-        x high, y low, y high, z low, z high.
-    wall_temperature : (wall,)
-        Temperature of each wall [K]; None for a wall without one.
-    planar : bool
-        Whether the molecules do not move along y.
-    reach : float, optional
-        Greatest height of the ceiling during the run [m], if it is known.
-    """
-
-    length: tuple[float, float, float]
-    walls: tuple[str, ...] = ("specular",) * _WALLS
-    wall_temperature: tuple[float | None, ...] = (None,) * _WALLS
-    planar: bool = False
-    gravity: bool = False
-    reach: float | None = None
-
-    @property
-    def unit(self) -> str:
-        """The unit in which its sides are shown."""
-        return length_unit(max(self.length))
-
-    @property
-    def metre(self) -> float:
-        """One metre in the unit that is shown."""
-        return 1.0 / _UNITS[self.unit]
-
-    def as_record(self) -> dict[str, object]:
-        """Return the box as data for the page, its lengths in the unit that is shown."""
-        length = [side * self.metre for side in self.length]
-        warm = [t if t is not None and math.isfinite(t) else None for t in self.wall_temperature]
-        return {
-            "unit": self.unit,
-            "length": length,
-            "reach": max(length[2], (self.reach or 0.0) * self.metre),
-            "walls": list(self.walls),
-            "wall_temperature": warm,
-            "planar": self.planar,
-            "gravity": self.gravity,
-        }
-
-
-def page_box(seen: Molecules) -> Box:
-    """Return the box of a saved run."""
-    x, y, z = (float(side) for side in seen.side[0])
-    warm = tuple(float(value) if math.isfinite(value) else None for value in seen.wall_temperature[0])
-    reach = None if seen.discs else float(seen.side[:, 2].max())
-    return Box((x, y, z), seen.walls, warm, seen.planar, seen.gravity, reach)
+def page_box(seen: Molecules) -> dict[str, Any]:
+    """Return the box of a run at its start as data for the page, its lengths in the unit that is shown."""
+    unit = length_unit(float(seen.side[0].max()))
+    sides = seen.side.astype(np.float64) / _UNITS[unit]
+    return {
+        "unit": unit,
+        "length": sides[0].tolist(),
+        "reach": float(sides[0, 2] if seen.discs else sides[:, 2].max()),
+        "walls": list(seen.walls),
+        "wall_temperature": plain(seen.wall_temperature[0]),
+        "planar": bool(seen.planar),
+        "gravity": bool(seen.gravity),
+    }
 
 
 def length_unit(length: float) -> str:
@@ -162,12 +113,11 @@ _PARTICLES = {False: "molecule", True: "disc"}
 class Stage(NamedTuple):
     """The data that the page gets once, in types that JSON can hold, and what is needed to make frames for it.
 
-    ``shown`` are the indices of the molecules that are drawn, ``variables`` those that the graphs need.
+    ``shown`` are the indices of the molecules that are drawn.
     """
 
     record: dict[str, Any]
     shown: Indices
-    variables: tuple[str, ...]
 
     def frame(
         self,
@@ -180,14 +130,13 @@ class Stage(NamedTuple):
         drops: ArrayLike | None = None,
         liquid: int = 0,
         rained: int = 0,
-        highest: float | None = None,
     ) -> bytes:
         """Return one frame as the bytes that the page reads, see `atmosbox.page.frame.encode`.
 
         ``time`` has the unit of the stage; ``length`` (axis,), ``position`` (molecule, axis) and the positions and
-        radii of ``drops`` (drop, 4) are in m, ``speed`` (molecule,) and ``highest``, the top of the colour scale, in
-        m/s. All molecules of the run are given, with NaN in the liquid; ``liquid`` is the number of those in a mist or
-        a pool, ``rained`` of those that have left as rain.
+        radii of ``drops`` (drop, 4) are in m, ``speed`` (molecule,) in m/s. All molecules of the run are given, with
+        NaN in the liquid; ``liquid`` is the number of those in a mist or a pool, ``rained`` of those that have left as
+        rain.
         """
         metre = self.record["metre"]
         sides = np.asarray(length, np.float64) * metre
@@ -203,89 +152,60 @@ class Stage(NamedTuple):
         elif liquid:
             wet = clumps(liquid, water, sides, self.record["species"][-1]["drawn"])
         wet = np.concatenate((wet, layer(rained, water, rain=True)))
-        return encode(sequence, time, sides, place, fast, highest or self.record["speed"]["high"], wet)
+        return encode(sequence, time, sides, place, fast, self.record["speed"]["high"], wet)
 
 
 def stage(
+    seen: Molecules,
     *,
-    scene: str,
     title: str,
-    box: Box,
-    mass: ArrayLike,
-    diameter: ArrayLike,
     fastest: float,
-    water: ArrayLike | None = None,
-    drops: bool = False,
-    right: ArrayLike | None = None,
     story: str = "",
-    facts: Iterable[tuple[str, str]] = (),
     settings: Iterable[tuple[str, str]] = (),
-    version: str = "",
-    seed: int | None = None,
-    engine: str = "exact",
     time_unit: str = "ns",
-    panels: Sequence[Panel] = (),
+    panels: Sequence[dict[str, Any]] = (),
     most: int = MOST,
-    discs: bool = False,
-    counted: bool = False,
-    meaning: Callable[[str], Meaning] | None = None,
-    sentences: Sequence[Sequence[str]] = (),
-    marks: Mapping[int, dict[str, float]] | None = None,
 ) -> Stage:
     """Return the stage of a run: the data that the page gets once.
 
     Parameters
     ----------
-    mass, diameter : (molecule,)
-        Mass and diameter of every molecule of the run [kg, m]; NaN where they are not known.
+    seen
+        The molecules and their box; of mass and diameter, NaN where they are not known. Drops are drawn to size, and
+        molecules beside them smaller, so that drops stand out.
+    title, story, settings
+        Contents of the heading and of the caption.
     fastest : float
-        Speed that the colour scale must reach [m/s]; the scale ends at the next round number. With ``counted``, the
-        end of the scale itself, a number of neighbours.
-    water : (molecule,), optional
-        Whether each molecule is water.
-    drops : bool
-        Whether drops fly among the molecules. Drops are drawn to size, and molecules smaller, so that drops stand out.
-    right : (molecule,), optional
-        Whether each molecule belongs to the second of two gases, which was on the right at the start.
-    story, facts, settings, version, seed, engine
-        Contents of the caption.
+        Speed that the colour scale must reach [m/s]; the scale ends at the next round number. If colours show the
+        number of neighbours, the end of the scale itself.
     time_unit : str
         The unit of the times of frames.
+    panels : sequence of dict
+        The graphs, see `panel_record`.
     most : int
         Greatest number of molecules that are drawn.
-    discs : bool
-        Whether the molecules are called discs and are drawn each with its own size.
-    counted : bool
-        Whether the colours show the number of neighbours of a molecule, and not its speed.
-    meaning : callable, optional
-        Function that returns the `Meaning` of a variable; by default that of its declaration.
-    sentences : sequence of sequence of str
-        The headline numbers of each panel.
-    marks : mapping of int to dict, optional
-        Pressures of the levels that panels mark [hPa], by the number of the panel.
 
     Examples
     --------
     Molecules that would be too small to see are drawn wider, and the record says so:
 
-    >>> box = Box(length=(8.4e3, 8.4e3, 2.5e4), gravity=True)
-    >>> column = stage(
-    ...     scene="atmosphere", title="A column", box=box, mass=np.full(9, 4.8e-26), diameter=np.full(9, 50.0),
-    ...     fastest=900.0, time_unit="s",
-    ... )
+    >>> place, wide, sides = np.ones((1, 9, 3)), np.full(9, 50.0), np.array([[8.4e3, 8.4e3, 2.5e4]])
+    >>> walls = ("specular",) * 6, np.full((1, 6), math.nan)
+    >>> air = Molecules(False, np.ones(1), place, place[:, :, 0], wide * 1e-27, wide, None, sides, *walls, False, True)
+    >>> column = stage(air, title="A column", fastest=900.0, time_unit="s")
     >>> column.record["box"]["unit"], column.record["exaggeration"]
     ('km', 'Molecules collide as if 50 m wide, and are drawn 10 times as wide.')
     """
-    heavy = np.atleast_1d(np.asarray(mass, np.float64))
-    wide = np.atleast_1d(np.asarray(diameter, np.float64))
-    wet = None if water is None else np.asarray(water, np.bool_)
+    box, discs, wet = page_box(seen), seen.discs, seen.water
+    drops, counted = seen.drops is not None, seen.neighbours is not None
+    heavy, wide = np.asarray(seen.mass, np.float64), np.asarray(seen.diameter, np.float64)
     shown = chosen(len(heavy), most, wet)
-    kinds, kind = _kinds(heavy, wet, None if right is None else np.asarray(right, np.bool_), discs=discs)
-    lengths = np.array([side for axis, side in enumerate(box.length) if not (box.planar and axis == 1)])
-    misty = wet is not None and bool(wet.any()) and box.walls[4] != "pool"
+    kinds, kind = _kinds(heavy, wet, seen.right, discs=discs)
+    lengths, metre = seen.side[0][[0, 2]] if seen.planar else seen.side[0], 1.0 / _UNITS[box["unit"]]
+    misty = wet is not None and bool(wet.any()) and seen.walls[4] != "pool"
     beside = _BESIDE_DROPS if drops else _BESIDE_MIST if misty else 1.0
     room = float(np.exp(np.log(lengths).mean())) * beside
-    wider, said = _width(wide, room, len(shown), discs=discs, unit=box.unit)
+    wider, said = _width(wide, room, len(shown), discs=discs, unit=box["unit"])
     drawn = wide * wider
     if not discs and np.ptp(wide[np.isfinite(wide)]) == 0.0:
         drawn = drawn * np.cbrt(heavy / np.nanmax(heavy))  # equal diameters: the drawn size shows the mass
@@ -293,32 +213,24 @@ def stage(
         {
             "name": name,
             "mass": _mean(heavy[kind == number]),
-            "diameter": _mean(wide[kind == number]) * box.metre,
-            "drawn": _mean(drawn[kind == number]) * box.metre,
-            "count": int(np.sum(kind == number)),
+            "diameter": _mean(wide[kind == number]) * metre,
+            "drawn": _mean(drawn[kind == number]) * metre,
         }
         for number, name in enumerate(kinds)
     ]
-    tell = meaning or (lambda name: declared(name, time_unit))
-    graphs = [(number, panel) for number, panel in enumerate(panels) if panel.kind != "discs"]
     record = {
-        "scene": scene,
         "title": title,
         "story": story,
-        "facts": [list(fact) for fact in facts],
-        "settings": [[name.replace("_", " "), text.replace("degC", "°C")] for name, text in settings],
-        "version": version,
-        "seed": seed,
-        "engine": engine,
+        "settings": [list(pair) for pair in settings],
         "particle": _PARTICLES[discs],
         "molecules": len(heavy),
         "molecules_shown": len(shown),
         "exaggeration": said,
-        "metre": box.metre,
-        "box": box.as_record() | {"misty": misty and not drops},
+        "metre": metre,
+        "box": box | {"misty": misty and not drops},
         "species": species,
         "kind": kind[shown].tolist(),
-        "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
+        "size": plain(drawn[shown] * metre, 5) if discs and np.ptp(drawn) > 0.0 else None,
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
         "speed": {
@@ -328,18 +240,9 @@ def stage(
             "counted": counted,
             "bend": _BEND if discs else 1.0,
         },
-        "panels": [
-            panel_record(
-                panel,
-                tell,
-                sentences=sentences[number] if number < len(sentences) else (),
-                marks=(marks or {}).get(number),
-            )
-            for number, panel in graphs
-        ],
-        "variables": {name: {"units": tell(name).unit, "long_name": tell(name).words} for name in names(panels)},
+        "panels": list(panels),
     }
-    return Stage(record, shown, names(panels))
+    return Stage(record, shown)
 
 
 def _kinds(
@@ -402,8 +305,3 @@ def _mean(values: Floats) -> float:
     """Return the mean of the finite values; 0 if there are none."""
     known = values[np.isfinite(values)]
     return float(f"{known.mean():.6g}") if known.size else 0.0
-
-
-def _figures(values: Floats) -> list[float]:
-    """Return numbers with five significant digits, which are enough for a picture."""
-    return [float(f"{value:.5g}") for value in values]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ import numpy as np
 from atmosbox.file.molecules import Molecules
 from atmosbox.file.provenance import parameters
 from atmosbox.page.stage import length_text
+from atmosbox.scene.conversion import phrase, spelled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,8 +47,7 @@ def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
     made = parameters(dataset)
     units = _units(str(made.get("scene", "")))
     return [
-        (name.replace("_", " "), _phrase(value, units.get(name, "")))
-        for name, value in made.get("settings", {}).items()
+        (name.replace("_", " "), _said(value, units.get(name, ""))) for name, value in made.get("settings", {}).items()
     ]
 
 
@@ -66,7 +65,7 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     if len({each["scene"] for each in told}) > 1:
         return [str(run.attrs.get("title", each["scene"])) for run, each in zip(runs, told, strict=True)]
     different = [name for name in known if len({each.get(name) for each in told}) > 1]
-    headings = [_heading(each, different) for each in told]
+    headings = [" · ".join(f"{name} {each[name]}" for name in different if name in each) for each in told]
     return [heading or f"run {number + 1}" for number, heading in enumerate(headings)]
 
 
@@ -131,16 +130,14 @@ def _units(scene: str) -> dict[str, str]:
     return {parameter.name: parameter.unit for parameter in scenarios.load(scene).Settings.describe()}
 
 
-def _heading(told: Mapping[str, str], names: Sequence[str]) -> str:
-    return " · ".join(f"{name} {told[name]}" for name in names if name in told)
+def _said(value: object, unit: str) -> str:
+    """Return the value of a setting with its unit as text.
 
-
-def _phrase(value: object, unit: str) -> str:
-    """Return a value with its unit as text."""
+    >>> _said(9.81, "m s-2"), _said(-5.0, "degC"), _said(True, ""), _said("warm", "")
+    ('9.81 m/s²', '−5 °C', 'on', 'warm')
+    """
     if isinstance(value, bool):
         return "on" if value else "off"
-    if isinstance(value, int | float) and math.isfinite(value):
-        from atmosbox.plot.curve import spelled
-
-        return f"{value:.6g} {spelled(unit)}".replace("-", "\u2212").rstrip()
+    if isinstance(value, int | float):
+        return phrase(value, spelled(unit)).replace("-", "\u2212")
     return str(value)

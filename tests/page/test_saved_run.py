@@ -48,14 +48,14 @@ def test_the_ceiling_of_a_lifted_parcel_is_where_its_piston_is(saved):
     height = run.box_side.sel(axis="z").values
     assert height[-1] > 1.5 * height[0]
     seen = molecules(run)
-    assert page_box(seen).walls == ("specular",) * 5 + ("piston",)
-    assert page_box(seen).reach == height.max()
+    assert page_box(seen)["walls"] == ["specular"] * 5 + ["piston"]
+    assert page_box(seen)["reach"] == height.max() / 1e-9  # nm
 
 
 def test_the_floor_under_a_pool_is_a_pool_and_its_molecules_are_water_from_the_start(saved):
     run = saved("evaporation")
     seen = molecules(run)
-    assert page_box(seen).walls[4:] == ("pool", "piston")
+    assert page_box(seen)["walls"][4:] == ["pool", "piston"]
     assert seen.water.sum() == int(run.vapor_molecule_count[0] + run.liquid_molecule_count[0])
     np.testing.assert_allclose(run.molecule_mass.values[seen.water], WATER.molecule_mass)
     np.testing.assert_allclose(run.molecule_mass.values[~seen.water], DRY_AIR.molecule_mass)

@@ -1,32 +1,13 @@
-"""Advance molecules that attract each other, in a page, with the engine's own loop, and change them with knobs."""
+"""Change the attraction of molecules, and the temperature of their random bath, with knobs of a page."""
 
 import functools
-import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.exact import Status
-from atmosbox.engine.exact.layout import PLACE
-from atmosbox.engine.wells.well_advance import advancing
 from atmosbox.engine.wells.well_events import specialise
 from atmosbox.lab.kernels.readings import ENERGY
-
-
-class Lists(NamedTuple):
-    """The sizes of the lists of neighbours, and the depth of the wells.
-
-    ``stride : (1,)`` is the present number of words of a list, ``due : (1,)`` what is to be done with the lists;
-    ``full_depth : (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over
-    the full one; ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
-    """
-
-    stride: Any
-    due: Any
-    full_depth: Any
-    strength: Any
-    work: Any
 
 
 @kernel
@@ -41,32 +22,20 @@ def energy_of_wells(wells):
 
 @functools.cache
 def attracting(modes: Modes) -> dict[str, Callable[..., Any]]:
-    """Return the kernels that replace those of another box, or that only its knobs call, by name."""
-    pass_time, settle = advancing(modes)
+    """Return the kernels that only the knobs of such a box call, by name."""
     _, _, replan, _ = specialise(modes)
 
     @kernel
-    def place(gas, book, layout):
-        """List the neighbours of all molecules at the start; keep the first time of the bath if it is drawn already."""
-        state, clock = gas.tallies.random[0], gas.bath.clock[0]
-        layout.due[0] = PLACE
-        placed = settle(gas, book.now[0], layout)
-        if not math.isinf(clock):
-            gas.tallies.random[0] = state
-            gas.bath.clock[0] = clock
-        return Status.DONE.value if placed else Status.FULL.value
-
-    @kernel
-    def attract(gas, book, layout, gauges, strength):
+    def attract(gas, book, crowd, gauges, strength):
         """Change the depth of all wells: see `AttractingParcelSet.set_strength`."""
         depth, work = gas.wells.depth, -energy_of_wells(gas.wells)
         for one in range(depth.shape[0]):
             for two in range(depth.shape[1]):
-                depth[one, two] = strength * layout.full_depth[one, two]
+                depth[one, two] = strength * crowd.full_depth[one, two]
         work += energy_of_wells(gas.wells)
-        layout.work[0] += work
+        crowd.work[0] += work
         gauges.before[ENERGY] += work
-        layout.strength[0] = strength
+        crowd.strength[0] = strength
         replan(gas, book.now[0])
         return 0
 
@@ -76,4 +45,4 @@ def attracting(modes: Modes) -> dict[str, Callable[..., Any]]:
         gas.bath.schedule_kT[:] = kT
         return 0
 
-    return {"pass_time": pass_time, "place": place, "attract": attract, "warm_bath": warm_bath}
+    return {"attract": attract, "warm_bath": warm_bath}

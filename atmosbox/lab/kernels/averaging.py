@@ -6,7 +6,7 @@ the page is open. The standard error of the average is computed from the scatter
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 from atmosbox.engine.core.jit import kernel
 
@@ -18,7 +18,7 @@ HELD, FRAMES, LENGTH = range(3)
 FILLED, ALL = BLOCKS, BLOCKS + 1
 
 
-class Average(NamedTuple):
+class Average(namedtuple("Average", "blocks state mean error")):
     """The blocks of some quantities.
 
     ``blocks : (BLOCKS + 2, number)`` are sums over the frames of each block; the last row but one is the block that is
@@ -26,11 +26,6 @@ class Average(NamedTuple):
     frames in the block that is being filled, the number of frames in a full block, and that number at the start.
     ``mean, error : (number of averages,)`` are the average and its standard error, NaN while there are too few blocks.
     """
-
-    blocks: Any
-    state: Any
-    mean: Any
-    error: Any
 
 
 @kernel

@@ -5,8 +5,9 @@ These kernels compute the counts and sums of `atmosbox.scene.instruments.Cluster
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,27 +20,21 @@ from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.picture import picture
 from atmosbox.lab.kernels.readings import TIME, Reading
+from atmosbox.scene.instruments.condensate import CROWDED
 
 
-class Crowd(NamedTuple):
+class Crowd(namedtuple("Crowd", "members wells drop size liquid virial gas_law full_depth strength work")):
     """The data of the drops.
 
-    ``members`` is the number of molecules that attract each other, which come first; ``crowded`` the smallest number of
-    wells that a molecule inside a drop is in. ``wells``, ``drop``, ``size : (molecule,)``: for each molecule the number
-    of wells that it is in, the molecule that represents its drop (-1 in the vapour), and the size of the drop that it
-    represents; ``liquid`` the density of the liquid in drops [1/length^3]. ``virial : (1,)`` is the virial at the end
-    of the last frame [energy]; ``gas_law : (2, 4)`` the coefficients of p / n k T - 1 of a gas: rows for the powers 1
-    and 2 of its density, columns for the powers 0 to 3 of e^(strength / kT) - 1.
+    ``members`` is the number of molecules that attract each other, which come first. ``wells``, ``drop``, ``size :
+    (molecule,)``: for each molecule the number of wells that it is in, the molecule that represents its drop (-1 in the
+    vapour), and the size of the drop that it represents; ``liquid`` the density of the liquid in drops [1/length^3].
+    ``virial : (1,)`` is the virial at the end of the last frame [energy]; ``gas_law : (2, 4)`` the coefficients of p /
+    n k T - 1 of a gas: rows for the powers 1 and 2 of its density, columns for the powers 0 to 3 of e^(strength / kT) -
+    1. ``full_depth :
+    (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over the full one;
+    ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
     """
-
-    members: int
-    crowded: int
-    wells: Any
-    drop: Any
-    size: Any
-    liquid: float
-    virial: Any
-    gas_law: Any
 
 
 @kernel
@@ -66,7 +61,7 @@ def _find_drops(vicinity, stride, crowd):
     """Find the drop that each molecule belongs to: see `instruments.drops_of`."""
     wells, drop, entry = crowd.wells, crowd.drop, vicinity.entry
     for i in range(drop.size):
-        drop[i] = i if wells[i] >= crowd.crowded else -1
+        drop[i] = i if wells[i] >= CROWDED else -1
     for i in range(drop.size):
         for q in range(i * stride + 1, i * stride + 1 + np.int64(entry[i * stride])):
             j = np.int64(entry[q]) >> 1
@@ -82,7 +77,7 @@ def _find_drops(vicinity, stride, crowd):
                 j = np.int64(entry[q]) >> 1
                 inner, outer = (i, j) if lower_is_liquid else (j, i)
                 touches = j > i and is_inside(entry[q])
-                if touches and wells[inner] >= crowd.crowded and wells[outer] < crowd.crowded:
+                if touches and wells[inner] >= CROWDED and wells[outer] < CROWDED:
                     drop[outer] = drop[inner]
 
 
@@ -160,12 +155,12 @@ def clustering(modes: Modes) -> dict[str, Callable[..., Any]]:
         reading[Reading.ATTRACTION_ENERGY] = bound
         reading[Reading.MOLECULAR_ENERGY] = kinetic + bound
         reading[Reading.HEAT_FROM_BATH] = gas.bath.heat[0]
-        reading[Reading.WORK_BY_ATTRACTION] = layout.work[0]
+        reading[Reading.WORK_BY_ATTRACTION] = crowd.work[0]
         reading[Reading.VIRIAL_PRESSURE] = (motion + (virial - crowd.virial[0]) / (3.0 * lasted)) / volume
         reading[Reading.WELL_COUNT] = np.sum(gas.wells.number)
         reading[Reading.AIR_TEMPERATURE_THEORY] = kT
         kT = reading[Reading.AIR_TEMPERATURE]
-        reading[Reading.VIRIAL_PRESSURE_THEORY] = gas_pressure(density, kT, layout.strength[0], crowd.gas_law)
+        reading[Reading.VIRIAL_PRESSURE_THEORY] = gas_pressure(density, kT, crowd.strength[0], crowd.gas_law)
         crowd.virial[0] = virial
         return 0
 

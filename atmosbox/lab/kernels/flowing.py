@@ -1,45 +1,32 @@
-"""Wind and rolls of air that turns over, molecules released at the floor, and the adiabat: see `instruments.Flow`."""
+"""Wind and rolls of air that turns over, and the adiabat: see `instruments.Flow`."""
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.lab.kernels.readings import Reading
-from atmosbox.lab.kernels.sums import Sum, across
+from atmosbox.lab.kernels.sums import Sum
+
+_FRESH = 0.2
+"""Share by which the newest frame counts in the wind that is drawn."""
 
 
-class Flow(NamedTuple):
+class Flow(namedtuple("Flow", "sums frames high wave column wind lapse dense adiabat")):
     """The data of the wind in the parts of the layers; all arrays are empty in a scene that does not show it.
 
     ``sums : (3, part)`` are number and velocities along x and z of the molecules of each part in this frame, and
     ``frames : (1,)`` is the number of frames. ``high : (layer,)`` and ``wave : (wave, column)`` are the shapes of
     rolls; ``column : (2, column)`` is scratch.
 
-    ``tagged : (molecule,)`` is 1 for the molecules that are followed from the frame ``release`` on: those lower than
-    ``low`` [length] and nearer than ``near`` to the middle, as a share of the width. ``wind : (2, part)`` is the wind
-    along x and z of the last frames [velocity], of which the newest counts by the share ``fresh``. ``lapse :
-    (density,)`` is how fast air cools that rises, over gravity [mass], at the densities from 0 to ``dense``, and
-    ``adiabat : (layer,)`` the temperature of such air through the middle of the height [energy].
+    ``wind : (2, part)`` is the wind along x and
+    z of the last frames [velocity], of which the newest counts most. ``lapse : (density,)`` is how fast air cools that
+    rises, over gravity [mass], at the densities from 0 to ``dense``, and ``adiabat : (layer,)`` the temperature of such
+    air through the middle of the height [energy].
     """
-
-    sums: Any
-    frames: Any
-    high: Any
-    wave: Any
-    column: Any
-    tagged: Any
-    release: int
-    low: float
-    near: float
-    wind: Any
-    fresh: float
-    lapse: Any
-    dense: float
-    adiabat: Any
 
 
 def can_flow(modes: Modes) -> bool:
@@ -56,7 +43,6 @@ def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         """Begin to measure."""
         flow.sums[:] = 0.0
         flow.frames[0] = 0.0
-        flow.tagged[:] = 0
         flow.wind[:] = 0.0
 
     @kernel
@@ -89,20 +75,6 @@ def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         gauges.means[Reading.ROLL_SPEED] += rolls
 
     @kernel
-    def followed(gas, now, gauges):
-        """Return the share of the followed molecules in the upper half, and choose them when it is time."""
-        flow, height = gauges.flow, gas.box.length_z
-        held = aloft = 0.0
-        for i in range(flow.tagged.size):
-            at = motion_at(i, now, gas, modes)
-            if flow.frames[0] == flow.release and at.z < flow.low:
-                flow.tagged[i] = abs(across(at.x, gas.box, gauges.parts) - 0.5) < flow.near
-            if flow.tagged[i] == 1:
-                held += 1.0
-                aloft += 1.0 if at.z > 0.5 * height else 0.0
-        return aloft / held if held > 0.0 else math.nan
-
-    @kernel
     def mean_along(layer, flow):
         """Return the mean wind along x in the middle half of a layer."""
         columns = flow.wave.shape[1]
@@ -113,16 +85,15 @@ def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return mean / (last - first)
 
     @kernel
-    def end(gas, now, gauges):
-        """Finish the wind of a frame, and read its speed, that of rolls, and the share of followed molecules aloft."""
+    def end(gauges):
+        """Finish the wind of a frame, and read its speed and that of rolls."""
         flow, sums, reading = gauges.flow, gauges.flow.sums, gauges.reading
         if flow.high.size == 0:
             return
-        reading[Reading.TRACER_SHARE_ALOFT] = followed(gas, now, gauges)
         for speed in (Reading.WIND_SPEED, Reading.ROLL_SPEED):  # their squares, negative where noise has made them so
             reading[speed] = math.copysign(math.sqrt(abs(reading[speed])), reading[speed])
         flow.frames[0] += 1.0
-        fresh = max(flow.fresh, 1.0 / flow.frames[0])
+        fresh = max(_FRESH, 1.0 / flow.frames[0])
         for part in range(sums.shape[1]):
             if sums[0, part] > 0.0:
                 for axis in range(2):

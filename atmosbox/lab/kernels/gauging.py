@@ -6,8 +6,9 @@ These kernels measure what the instruments of `atmosbox.scene.instruments` measu
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.schedule import interpolate
@@ -17,14 +18,19 @@ from atmosbox.engine.exact.advance import ascent_of
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
 from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.averaging import update
-from atmosbox.lab.kernels.flowing import Flow, can_flow, flowing, write_adiabat
-from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
+from atmosbox.lab.kernels.flowing import can_flow, flowing, write_adiabat
+from atmosbox.lab.kernels.hygrometer import hygrometry
 from atmosbox.lab.kernels.readings import ENERGY, TIME, Reading
-from atmosbox.lab.kernels.sums import Bins, Sum, ceiling, summing
-from atmosbox.lab.kernels.two_gases import Mixture, end_mixing
+from atmosbox.lab.kernels.sums import Sum, ceiling, summing
+from atmosbox.lab.kernels.two_gases import end_mixing
 
 
-class Gauges(NamedTuple):
+class Gauges(
+    namedtuple(
+        "Gauges",
+        "reading means samples before barometer whole parts fast sides speeds layers virial running mixture water flow",
+    )
+):
     """The data of the instruments of a box.
 
     ``reading : (Reading,)`` has the last readings, ``means : (Reading,)`` the sums over the samples of a frame of those
@@ -37,27 +43,10 @@ class Gauges(NamedTuple):
 
     ``speeds : (bin,)`` is the share of molecules by speed [1/velocity]; ``layers : (5 layer,)`` are number, energy,
     degrees of freedom, virial per time and wind along x of each layer, in the last frame, and ``virial : (layer,)`` the
-    virial at its end. ``running : (7,)`` has sums of the mean energies of light and heavy discs [energy], the number
-    of frames, the first energy, and the first momentum. ``mixture`` are two gases that mix; ``water`` vapour and
+    virial at its end. ``running : (3,)`` has sums of the mean energies of light and heavy discs [energy], and the
+    number of frames. ``mixture`` are two gases that mix; ``water`` vapour and
     liquid, 0 in a box without water; ``flow`` is the wind, 0 with kernels that do not measure it.
     """
-
-    reading: Any
-    means: Any
-    samples: Any
-    before: Any
-    barometer: int
-    whole: Bins
-    parts: Bins
-    fast: Bins
-    sides: Bins
-    speeds: Any
-    layers: Any
-    virial: Any
-    running: Any
-    mixture: Mixture
-    water: Hygrometer | int
-    flow: Flow | int
 
 
 @functools.cache
@@ -85,11 +74,9 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
         for part in range(parts.rows * parts.columns):
             sums, layer = parts.sums[part], part // parts.columns
             if sums[Sum.NUMBER] > 0.0:
-                drift = (sums[Sum.X] * sums[Sum.X] + sums[Sum.Y] * sums[Sum.Y] + sums[Sum.Z] * sums[Sum.Z]) / sums[
-                    Sum.MASS
-                ]
+                square = sums[Sum.X] * sums[Sum.X] + sums[Sum.Y] * sums[Sum.Y] + sums[Sum.Z] * sums[Sum.Z]
                 gauges.layers[layer] += sums[Sum.NUMBER]
-                gauges.layers[parts.rows + layer] += sums[Sum.KINETIC] - 0.5 * drift
+                gauges.layers[parts.rows + layer] += sums[Sum.KINETIC] - 0.5 * square / sums[Sum.MASS]
                 gauges.layers[2 * parts.rows + layer] += planes * (sums[Sum.NUMBER] - 1.0)
 
     @kernel
@@ -119,14 +106,10 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
         """Return the pressure of the frame from the impulses on the walls [energy/length^3]: see `open_faces`."""
         box, whole = gas.box, gauges.whole.sums[0]
         mean = whole[Sum.DIAMETER] / max(whole[Sum.NUMBER], 1.0)
-        x = box.length_x - (mean if box.inverse_x == 0.0 else 0.0)
-        y = 1.0 if box.planar else box.length_y - (mean if box.inverse_y == 0.0 else 0.0)
-        z = ceiling(gas, now) - (mean if box.inverse_z == 0.0 else 0.0)
-        faces = (
-            y * z if box.inverse_x == 0.0 else 0.0,
-            x * z if box.inverse_y == 0.0 and not box.planar else 0.0,
-            x * y if box.inverse_z == 0.0 else 0.0,
-        )
+        has_x, has_y, has_z = box.inverse_x == 0.0, box.inverse_y == 0.0 and not box.planar, box.inverse_z == 0.0
+        x, z = box.length_x - mean * has_x, ceiling(gas, now) - mean * has_z
+        y = 1.0 if box.planar else box.length_y - mean * has_y
+        faces = y * z * has_x, x * z * has_y, x * y * has_z  # 0 where there is no wall
         impulse = area = 0.0
         for wall in range(6):
             if gauges.barometer == 0 or gauges.barometer == wall:
@@ -135,26 +118,13 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
         return impulse / (area * lasted) if area > 0.0 and lasted > 0.0 else math.nan
 
     @kernel
-    def end_discs(gas, total, gauges):
-        """Measure the energies of the light and of the heavy discs, and check the balance of their momentum."""
-        reading, running, outward = gauges.reading, gauges.running, gas.tallies.impulse
-        whole, half = gauges.whole.sums[0], gauges.sides.sums
-        first = running[2] == 0.0
-        if first:
-            running[3] = total
+    def end_discs(gauges):
+        """Measure the mean energies of the light and of the heavy discs since the start."""
+        running, half = gauges.running, gauges.sides.sums
         running[2] += 1.0
         for k in range(2):
             running[k] += half[k, Sum.KINETIC] / max(half[k, Sum.NUMBER], 1.0)
-            reading[Reading.RUNNING_ENERGY_LIGHT + k] = running[k] / running[2]
-        gone = 0.0
-        for axis in range(3):
-            momentum = whole[Sum.X + axis] - (outward[2 * axis] - outward[2 * axis + 1])
-            if first:
-                running[4 + axis] = momentum
-            gone += (momentum - running[4 + axis]) ** 2
-        size = math.sqrt(2.0 * whole[Sum.MASS] * running[3])
-        reading[Reading.ENERGY_CHANGE] = total / running[3] - 1.0
-        reading[Reading.MOMENTUM_RESIDUAL] = math.sqrt(gone) / size if size > 0.0 else 0.0
+            gauges.reading[Reading.RUNNING_ENERGY_LIGHT + k] = running[k] / running[2]
 
     @kernel
     def end_lift(gas, ascent, book, gauges):
@@ -213,9 +183,8 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
             reading[k] = gauges.means[k] / samples
         reading[Reading.ELAPSED_TIME] = time
         reading[Reading.AIR_PRESSURE] = pressure(gas, now, lasted, gauges)
-        reading[Reading.LEDGER_RESIDUAL] = (
-            abs(total - gauges.before[ENERGY] - given) / largest if largest > 0.0 else 0.0
-        )
+        off = abs(total - gauges.before[ENERGY] - given)
+        reading[Reading.LEDGER_RESIDUAL] = off / largest if largest > 0.0 else 0.0
         reading[Reading.COLLISION_COUNT] = gas.tallies.count[0]
         reading[Reading.KINETIC_ENERGY] = gauges.whole.sums[0, Sum.KINETIC]
         reading[Reading.GRAVITY] = gas.box.gravity
@@ -231,11 +200,11 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
                 gauges.layers[k * layers + layer] /= samples
             gauges.layers[3 * layers + layer] = (gas.tallies.virial[layer] - gauges.virial[layer]) / lasted
         if gauges.running.size > 0:
-            end_discs(gas, total, gauges)
+            end_discs(gauges)
         if gauges.sides.columns > 1:
             end_mixing(time, gauges)
         if flows:
-            end_wind(gas, now, gauges)
+            end_wind(gauges)
         if modes.phases:
             end_water(gas, ascent, book, time, lasted, gauges)
         elif modes.ascends:

@@ -2,8 +2,11 @@
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
+
+import numpy as np
 
 from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.jit import kernel
@@ -24,7 +27,13 @@ from atmosbox.lab.kernels.readings import Reading
 from atmosbox.lab.kernels.sums import Sum, ceiling
 
 
-class Hygrometer(NamedTuple):
+class Hygrometer(
+    namedtuple(
+        "Hygrometer",
+        "before met contact volatility power binding critical moment planned log_pressure adiabat level "
+        "around mass width mean error empty merged",
+    )
+):
     """The data of the instruments for the water of a box.
 
     ``before : (2,)`` are the numbers of molecules that had condensed and evaporated at the end of the last frame;
@@ -46,26 +55,6 @@ class Hygrometer(NamedTuple):
     molecules that left the liquid; the first ``empty`` bins lie below the binding energy, and ``merged`` bins of the
     engine make one bin. The arrays are empty in a scene that does not show them.
     """
-
-    before: Any
-    met: Any
-    contact: Any
-    volatility: float
-    power: float
-    binding: float
-    critical: float
-    moment: Any
-    planned: Any
-    log_pressure: Any
-    adiabat: Any
-    level: Any
-    around: Any
-    mass: float
-    width: Any
-    mean: Any
-    error: Any
-    empty: int
-    merged: int
 
 
 @kernel
@@ -90,12 +79,6 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         for k in range(water.contact.size - 1, -1, -1):
             value = value * x + water.contact[k]
         return 1.0 + 4.0 * filled * (value / (1.0 - filled))
-
-    @kernel
-    def liquid_kT(reservoir):
-        """Return the temperature of the liquid [energy]; NaN if there are neither liquid nor nuclei."""
-        capacity = heat_capacity(reservoir)
-        return reservoir.energy[THERMAL] / capacity if capacity > 0.0 else math.nan
 
     @kernel
     def adiabat(time, logarithm, lift, water):
@@ -148,7 +131,8 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         pressure = vapour / (x * y * z) * kT * factor(number / volume, wide, water)
         means[Reading.GAS_TEMPERATURE] += kT
         means[Reading.WATER_VAPOR_PARTIAL_PRESSURE] += pressure
-        means[Reading.LIQUID_TEMPERATURE] += liquid_kT(reservoir)
+        capacity = heat_capacity(reservoir)  # 0 if there are neither liquid nor nuclei
+        means[Reading.LIQUID_TEMPERATURE] += reservoir.energy[THERMAL] / capacity if capacity > 0.0 else math.nan
         means[Reading.HUMIDITY_MIXING_RATIO] += vapour / air if air > 0.0 else math.nan
         means[Reading.CLOUD_LIQUID_WATER_MIXING_RATIO] += reservoir.count[LIQUID] / air if air > 0.0 else math.nan
         means[Reading.RAIN_MIXING_RATIO] += reservoir.count[RAINED] / air if air > 0.0 else math.nan
@@ -187,20 +171,14 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def end_leaving(reservoir, water):
         """Read the energies of the molecules that have left the liquid: see `instruments.Leaving`."""
-        total = 0.0
-        for k in range(reservoir.spectrum.size):
-            total += reservoir.spectrum[k]
+        total = np.sum(reservoir.spectrum)
         for k in range(water.width.size):
-            water.mean[k] = water.error[k] = 0.0 if total > 0.0 else math.nan
-            if k < water.empty or not total > 0.0:
-                continue
-            number = 0.0
-            first = (k - water.empty) * water.merged
-            for each in range(first, first + water.merged):
-                number += reservoir.spectrum[each]
-            share = number / total
-            water.mean[k] = share / water.width[k]
-            water.error[k] = math.sqrt(share * (1.0 - share) / total) / water.width[k]
+            water.mean[k] = water.error[k] = 0.0 if total > 0 else math.nan
+            if k >= water.empty and total > 0:
+                first = (k - water.empty) * water.merged
+                share = np.sum(reservoir.spectrum[first : first + water.merged]) / total
+                water.mean[k] = share / water.width[k]
+                water.error[k] = math.sqrt(share * (1.0 - share) / total) / water.width[k]
 
     @kernel
     def end_frame(gas, ascent, book, time, lasted, gauges):

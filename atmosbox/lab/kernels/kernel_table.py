@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -11,29 +12,36 @@ from atmosbox.engine.exact.advance import advancing, dry_loop
 from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.liquid.moist_loop import moist_loop
+from atmosbox.engine.wells import well_advance
 from atmosbox.lab.kernels.attracting import attracting
 from atmosbox.lab.kernels.averaging import begin_averages_anew
 from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.knobs import knobs
 from atmosbox.lab.kernels.picture import picture
-from atmosbox.lab.kernels.starting import can_start, starting
+from atmosbox.lab.kernels.starting import starting
 
 
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found = knobs(modes, wells=wells)
-    found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
-    found |= {"look": picture(modes), "begin_averages_anew": begin_averages_anew}
+    found |= {"start": starting(modes, wells=wells), "look": picture(modes), "begin_averages_anew": begin_averages_anew}
     found |= zip(("begin", "sample", "end_frame", "note_frame"), gauging(modes, wells=wells), strict=True)
-    if wells:
-        return found | attracting(modes) | clustering(modes)
-    pass_time, settle = advancing(modes, moist_loop if modes.phases else dry_loop)
+    found |= attracting(modes) | clustering(modes) if wells else {}
+    loops = moist_loop if modes.phases else dry_loop
+    pass_time, settle = well_advance.advancing(modes) if wells else advancing(modes, loops)
 
     @kernel
     def place(gas, book, layout):
-        """Enter all molecules into their cells and plan their events; return ``DONE`` or ``FULL``."""
+        """Enter all molecules into their cells or lists and plan their events; return ``DONE`` or ``FULL``."""
         layout.due[0] = PLACE
-        return Status.DONE.value if settle(gas, book.now[0], layout) else Status.FULL.value
+        if not wells:
+            return Status.DONE.value if settle(gas, book.now[0], layout) else Status.FULL.value
+        state, clock = gas.tallies.random[0], gas.bath.clock[0]
+        placed = settle(gas, book.now[0], layout)
+        if not math.isinf(clock):  # the first time of the bath is drawn already
+            gas.tallies.random[0] = state
+            gas.bath.clock[0] = clock
+        return Status.DONE.value if placed else Status.FULL.value
 
     return found | {"pass_time": pass_time, "place": place}

@@ -20,9 +20,8 @@ from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import Column, Layout, write_column
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.liquid.reservoir import cover
-from atmosbox.lab.kernels.pairwise import pairwise_sum
 from atmosbox.lab.kernels.readings import ENERGY
-from atmosbox.lab.kernels.starting import can_start
+from atmosbox.lab.kernels.starting import kinetic_energy
 
 
 @functools.cache
@@ -83,28 +82,26 @@ def lead(gas, ascent, book, towards):
 
 def can_set_gravity(modes: Modes) -> bool:
     """Return whether a page can change gravity in boxes of a set of modes: columns of one gas without a piston."""
-    return modes.gravity and modes.rows and can_start(modes) and not (modes.piston or modes.mixed or modes.phases)
+    return modes.gravity and modes.rows and not (modes.piston or modes.mixed or modes.phases)
 
 
 @kernel
-def _remainder(x, side):
-    """Return x modulo a side of the box, as numpy computes it: all steps but the last sum are exact."""
+def _inside(x, side, inverse):
+    """Return a coordinate inside of a periodic box, x modulo its side as numpy computes it, but never the side itself.
+
+    All steps but the last difference are exact.
+    """
+    if inverse == 0.0:
+        return x
     left, step = abs(x), side
     while 2.0 * step <= left:
         step *= 2.0
     while step >= side:
         left -= step if left >= step else 0.0
         step *= 0.5
-    return left if x >= 0.0 or left == 0.0 else side - left
-
-
-@kernel
-def _inside(x, side, inverse):
-    """Return a coordinate inside of a periodic box."""
-    if inverse == 0.0:
-        return x
-    # once more, because a tiny negative coordinate first becomes that of the other side
-    return _remainder(_remainder(x, side), side)
+    if x < 0.0 and left > 0.0:
+        left = side - left
+    return left if left < side else 0.0
 
 
 @functools.cache
@@ -129,27 +126,15 @@ def gravity_setter(modes: Modes) -> Callable[..., Any]:
         return heights
 
     @kernel
-    def warmth(gas, begun):
-        """Return kT of the molecules or of the warmest wall, whichever is higher: see `ParcelSet`."""
-        number, walls = gas.molecules.size, gas.walls
-        for i in range(number):
-            molecule = gas.molecules[i]
-            mass, _, _ = kind_of(i, gas, modes)
-            square = molecule.vx * molecule.vx + molecule.vy * molecule.vy + molecule.vz * molecule.vz
-            begun.key[i] = mass * square
-        kinetic = 0.5 * pairwise_sum(begun.key, number, begun.waiting, begun.partial)
-        kT = 2.0 * kinetic / ((2.0 if gas.box.planar else 3.0) * number)
-        for wall in range(6):
-            if walls.law[wall] == HEAT_BATH:
-                kT = max(kT, walls.schedule_kT[walls.schedule[wall]])
-        return kT
-
-    @kernel
     def set_gravity(gas, book, begun, gauges, gravity):
         """Prepare the box for another gravity [length/time^2]; return ``DONE``, or ``FULL`` if memory is too short."""
         gauges.before[ENERGY] += (gravity - gas.box.gravity) * bring_to_now(gas, book.now[0])
-        kT, layout = warmth(gas, begun), begun.layout
-        c = layout.column
+        kinetic, _ = kinetic_energy(gas, begun)
+        kT = 2.0 * kinetic / ((2.0 if gas.box.planar else 3.0) * gas.molecules.size)
+        for wall in range(6):  # of the molecules or of the warmest wall, whichever is higher: see `ParcelSet`
+            if gas.walls.law[wall] == HEAT_BATH:
+                kT = max(kT, gas.walls.schedule_kT[gas.walls.schedule[wall]])
+        layout, c = begun.layout, begun.layout.column
         weight = begun.weight / gas.molecules.size * gravity
         column = Column(weight, kT, c.wanted, c.thinnest, c.count, c.old)
         other = Layout(layout.shape, layout.due, layout.filled, layout.edge, layout.radius, column)

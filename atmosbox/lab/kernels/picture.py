@@ -2,8 +2,9 @@
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.jit import kernel
@@ -11,11 +12,12 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.engine.liquid.reservoir import LIQUID, RAINED
 from atmosbox.lab.kernels.sums import ceiling, is_away
+from atmosbox.page.frame import POOL, RAIN
 
 _FINEST, _FASTEST = 65535, 255
 
 
-class Picture(NamedTuple):
+class Picture(namedtuple("Picture", "shown length place colour highest state drops many unit water clump spread")):
     """The data of a picture.
 
     ``shown : (shown,)`` are the molecules that are drawn; ``length : (3,)`` the present sides of the box [length];
@@ -26,22 +28,8 @@ class Picture(NamedTuple):
     of liquid to draw, in the unit of the page, and ``many : (1,)`` their present number. A scene with liquid also has:
     ``unit``, the unit of the page over the length of the engine; ``water``, the number of molecules of water;
     ``spread : (clump, axis)``, the places of the clumps of a mist as shares of the box, and ``clump``, the size of a
-    clump of one molecule; ``layers : (2,)``, the values that stand instead of a radius for a pool and for rain.
+    clump of one molecule.
     """
-
-    shown: Any
-    length: Any
-    place: Any
-    colour: Any
-    highest: float
-    state: Any
-    drops: Any
-    many: Any
-    unit: float
-    water: int
-    clump: float
-    spread: Any
-    layers: Any
 
 
 @functools.cache
@@ -133,9 +121,9 @@ def _liquid(modes: Modes) -> Callable[..., Any]:
         if modes.drops > 0:
             draw_drops(gas, book, picture)
         elif modes.pool:
-            draw_layer(count[LIQUID], picture.layers[0], picture)
+            draw_layer(count[LIQUID], POOL, picture)
         else:
             draw_mist(count[LIQUID], picture)
-        draw_layer(count[RAINED], picture.layers[1], picture)
+        draw_layer(count[RAINED], RAIN, picture)
 
     return look_at_liquid  # type: ignore[no-any-return]

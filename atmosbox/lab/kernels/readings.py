@@ -10,9 +10,9 @@ from atmosbox.scene.instruments import Air, Clusters, Discs, Flow, Leaving, Lift
 
 MEASURED: dict[type, tuple[str, ...]] = {
     Air: ("elapsed_time", "air_temperature", "air_pressure", "collision_count"),
-    Discs: ("running_energy_light", "running_energy_heavy", "energy_change", "momentum_residual"),
+    Discs: ("running_energy_light", "running_energy_heavy"),
     Mixing: ("mixing_amplitude", "mixing_entropy"),
-    Flow: ("wind_speed", "roll_speed", "tracer_share_aloft"),
+    Flow: ("wind_speed", "roll_speed"),
     Water: (
         "water_vapor_partial_pressure", "saturation_vapor_pressure", "relative_humidity", "gas_temperature",
         "liquid_temperature", "condensation_rate", "evaporation_rate", "humidity_mixing_ratio",

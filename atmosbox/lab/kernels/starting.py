@@ -6,8 +6,9 @@ The kernels draw the parts of a declared start in their order, with the same ran
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -37,66 +38,34 @@ _FIRST_OF_RUN, _FIRST_OF_START = (
 )
 
 
-class Cleared(NamedTuple):
+class Cleared(namedtuple("Cleared", "centre reach side")):
     """The drops that molecules make room for, and the side of the box: see `clear_of_drops`."""
 
-    centre: Any
-    reach: Any
-    side: float
 
-
-class Start(NamedTuple):
+class Start(
+    namedtuple(
+        "Start",
+        "parts numbered scale_height speed twice weight rotating warmth condensed warm spheres bins "
+        "factor mass degrees spread at layout cleared velocity key rank state",
+    )
+):
     """The data with which the molecules of a box are drawn and placed.
 
     ``parts : (part,)`` are the numbers of what is drawn, in order, and ``numbered`` is one of those in `NUMBERED`;
-    ``scale_height`` is that of the air as it is placed [length], 0 if it is spread evenly; ``planar`` 1 in a plane gas,
-    else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds differ. ``twice`` is twice the kinetic
-    energy of all molecules [energy], ``weight`` their mass, and ``rotating`` their rotational energy [energy];
-    ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of
-    rotation [energy], ``condensed`` the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the
-    warmest wall [length/time], in a box with liquid.
+    ``scale_height`` is that of the air as it is placed [length], 0 if it is spread evenly. ``speed`` is the speed
+    of all molecules [length/time], 0 if speeds differ. ``twice`` is twice the kinetic energy of all molecules
+    [energy], ``weight`` their mass, and ``rotating`` their rotational energy [energy]; ``twice`` and ``rotating``
+    are 0 if the energy stays as drawn. ``warmth`` is kT of rotation [energy], ``condensed`` the energy of the
+    liquid [energy]; ``warm`` a speed of molecules that leave the warmest wall [length/time], in a box with liquid.
 
     ``spheres`` and ``bins`` are the arguments of the engine's functions that place molecules; ``factor :
-    (molecule,)`` is sqrt(kT / m) [length/time], ``mass`` and ``degrees : (molecule,)`` are mass and rotational degrees
-    of freedom. ``spread : (2,)`` is the spacing of molecules [length], and the fastest speed of the walls and of a fall
-    over that spacing [length/time]. ``at`` has the data of the gas that the law of the piston needs, without the
-    energy, ``layout`` the cells of a column, and ``cleared`` the drops that molecules make room for; each is 0 in a box
-    without. ``velocity : (molecule, axis)``, ``key : (3 molecule + 1,)``, ``rank`` and ``other : (molecule,)``,
-    ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
+    (molecule,)`` is sqrt(kT / m) [length/time], ``mass`` and ``degrees : (molecule,)`` are mass and rotational
+    degrees of freedom. ``spread : (2,)`` is the spacing of molecules [length], and the fastest speed of the walls
+    and of a fall over that spacing [length/time]. ``at`` has the data of the gas that the law of the piston needs,
+    without the energy, ``layout`` the cells of a column, and ``cleared`` the drops that molecules make room for;
+    each is 0 in a box without. ``velocity : (molecule, axis)``, ``key : (3 molecule + 1,)``, ``rank : (molecule,)``
+    and ``state : (1,)`` are scratch.
     """
-
-    parts: Any
-    numbered: int
-    scale_height: float
-    planar: int
-    speed: float
-    twice: float
-    weight: float
-    rotating: float
-    warmth: float
-    condensed: float
-    warm: float
-    spheres: Any
-    bins: Any
-    factor: Any
-    mass: Any
-    degrees: Any
-    spread: Any
-    at: Any
-    layout: Any
-    cleared: Any
-    velocity: Any
-    key: Any
-    rank: Any
-    other: Any
-    waiting: Any
-    partial: Any
-    state: Any
-
-
-def can_start(modes: Modes) -> bool:
-    """Return whether a page can start boxes of a set of modes with another seed."""
-    return modes.ascends or not modes.piston
 
 
 @kernel
@@ -109,26 +78,22 @@ def _first_state(seed, first):
 
 
 @kernel
-def _sort(key, rank, other):
-    """Sort keys and write their order, stable for equal keys: a merge sort with runs that double."""
+def _sort(key, rank):
+    """Write the order of keys, stable for equal keys: insertion of keys at distances that are halved (Shell)."""
     number = rank.size
     for k in range(number):
         rank[k] = k
-    width = 1
-    while width < number:
-        for low in range(0, number, 2 * width):
-            middle, high = min(low + width, number), min(low + 2 * width, number)
-            a, b = low, middle
-            for k in range(low, high):
-                if b >= high or (a < middle and key[rank[a]] <= key[rank[b]]):
-                    other[k] = rank[a]
-                    a += 1
-                else:
-                    other[k] = rank[b]
-                    b += 1
-        for k in range(number):
-            rank[k] = other[k]
-        width *= 2
+    gap = number // 2
+    while gap > 0:
+        for k in range(gap, number):
+            one, to = rank[k], k
+            while to >= gap and (
+                key[one] < key[rank[to - gap]] or (key[one] == key[rank[to - gap]] and one < rank[to - gap])
+            ):
+                rank[to] = rank[to - gap]
+                to -= gap
+            rank[to] = one
+        gap //= 2
 
 
 @kernel
@@ -154,17 +119,11 @@ def _number(start):
             key[i] = uniform(start.state)
         elif start.numbered == ALONG_X:
             key[i] = start.spheres.x[i, 0]
-    _sort(key, start.rank, start.other)
+    _sort(key, start.rank)
 
 
 @kernel
-def _sum(number, start):
-    """Return the sum of the first numbers of ``key``, as numpy computes it."""
-    return pairwise_sum(start.key, number, start.waiting, start.partial)
-
-
-@kernel
-def _move(start):
+def _move(start, planar):
     """Draw the velocities of all molecules."""
     v, key, factor = start.velocity, start.key, start.factor
     for k in range(0, 3 * v.shape[0], 2):
@@ -172,7 +131,7 @@ def _move(start):
     for i in range(v.shape[0]):
         square = 0.0
         for axis in range(3):
-            v[i, axis] = 0.0 if axis == 1 and start.planar != 0 else key[3 * i + axis]
+            v[i, axis] = 0.0 if planar and axis == 1 else key[3 * i + axis]
             square += v[i, axis] * v[i, axis]
         for axis in range(3):
             v[i, axis] = start.speed * v[i, axis] / math.sqrt(square) if start.speed > 0.0 else v[i, axis] * factor[i]
@@ -191,7 +150,7 @@ def _be_at_rest(start):
         for i in range(mass.size):
             v[i, axis] -= momentum / start.weight
             start.key[3 * i + axis] = mass[i] * v[i, axis] * v[i, axis]
-    v *= math.sqrt(start.twice / _sum(3 * mass.size, start))
+    v *= math.sqrt(start.twice / pairwise_sum(start.key, 0, 3 * mass.size))
 
 
 @kernel
@@ -211,26 +170,19 @@ def _turn(start, energy):
             energy[i] += 0.5 * deviate * deviate
         energy[i] *= start.warmth
     if start.rotating > 0.0:
-        energy *= start.rotating / _rotational_energy(start, energy)
+        energy *= start.rotating / pairwise_sum(energy, 0, energy.size)
 
 
 @kernel
-def _rotational_energy(start, energy):
-    """Return the sum of the rotational energies of all molecules of the gas."""
-    for i in range(energy.size):
-        start.key[i] = energy[i]
-    return _sum(energy.size, start)
-
-
-@kernel
-def _kinetic_energy(start):
-    """Return the kinetic energy of all molecules, see `Account.energy`, and the highest of their speeds."""
-    v, highest = start.velocity, 0.0
-    for i in range(v.shape[0]):
-        square = v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2]
+def kinetic_energy(gas, start):
+    """Return the kinetic energy of all molecules of the gas, see `Account.energy`, and the highest of their speeds."""
+    highest, number = 0.0, start.mass.size
+    for i in range(number):
+        molecule = gas.molecules[i]
+        square = molecule.vx * molecule.vx + molecule.vy * molecule.vy + molecule.vz * molecule.vz
         highest = max(highest, square)
         start.key[i] = start.mass[i] * square
-    return 0.5 * _sum(v.shape[0], start), math.sqrt(highest)
+    return 0.5 * pairwise_sum(start.key, 0, number), math.sqrt(highest)
 
 
 @kernel
@@ -243,7 +195,7 @@ def _write_epoch(start, book):
     for axis in range(3):
         for i in range(v.shape[0]):
             start.key[i] = v[i, axis] * v[i, axis]
-        squares += _sum(v.shape[0], start)
+        squares += pairwise_sum(start.key, 0, v.shape[0])
     time = start.spread[0] / max(math.sqrt(squares / v.shape[0]), start.spread[1])
     power = 1.0
     while power > time:
@@ -269,7 +221,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
                     clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, begun.state)
                 _number(begun)
             elif part == VELOCITIES:
-                _move(begun)
+                _move(begun, gas.box.planar)
             elif modes.rotation:
                 _turn(begun, gas.kinds.rotational_energy[: begun.degrees.size])
             else:  # molecules without rotation: their numbers are drawn, too
@@ -293,10 +245,10 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             molecule.vz = begun.velocity[i, 2]
         gas.tallies.random[0] = _first_state(word, _FIRST_OF_RUN)
         _write_epoch(begun, book)
-        kinetic, fastest = _kinetic_energy(begun)
+        kinetic, fastest = kinetic_energy(gas, begun)
         energy = kinetic
         if modes.rotation:
-            energy += _rotational_energy(begun, gas.kinds.rotational_energy[: begun.degrees.size])
+            energy += pairwise_sum(gas.kinds.rotational_energy, 0, begun.degrees.size)
         book.energy[0] = energy + begun.condensed
         if modes.ascends:  # the first velocity of the piston
             a, energy = begun.at, book.energy[0] - begun.condensed
@@ -312,7 +264,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             return 0
         gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
         if modes.gravity and modes.rows:
-            kT = 2.0 * kinetic / ((2.0 if begun.planar != 0 else 3.0) * gas.molecules.size)
+            kT = 2.0 * kinetic / ((2.0 if gas.box.planar else 3.0) * gas.molecules.size)
             return 0 if write_column(kT, gas, begun.layout, modes) else 1
         return 0
 

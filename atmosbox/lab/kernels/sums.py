@@ -5,9 +5,10 @@ An instrument in Python sums with numpy what its page sums here: all quantities,
 
 import functools
 import math
+from collections import namedtuple
 from collections.abc import Callable
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ Sum = IntEnum("Sum", "NUMBER MASS X Y Z KINETIC ROTATION WEIGHT DIAMETER UPRIGHT
 diameter, square of the velocity along z, and the cosine that falls from 1 to -1 across the bins along x."""
 
 
-class Bins(NamedTuple):
+class Bins(namedtuple("Bins", "kind rows columns low width edges sums")):
     """Bins of molecules, and the sums over the molecules of each.
 
     ``kind : (molecule,)`` is the number of the kind of each, empty if they are alike; ``rows`` the number of layers
@@ -29,14 +30,6 @@ class Bins(NamedTuple):
     ``edges : (speed + 1,)`` those of bins of speed, a single number if there are none [velocity]. The bins are in the
     order of kind, row, column, speed. ``sums : (bin, quantity)`` has no rows in a scene that has no use for them.
     """
-
-    kind: Any
-    rows: int
-    columns: int
-    low: float
-    width: float
-    edges: Any
-    sums: Any
 
 
 @kernel

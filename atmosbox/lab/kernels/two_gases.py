@@ -1,7 +1,7 @@
 """Two gases that mix: the measurements of `atmosbox.scene.instruments.Mixing`, as kernels."""
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 from atmosbox.engine.core.elementary import log
 from atmosbox.engine.core.jit import kernel
@@ -10,7 +10,7 @@ from atmosbox.lab.kernels.sums import Sum
 from atmosbox.scene.instruments.mixing import PRIOR
 
 
-class Mixture(NamedTuple):
+class Mixture(namedtuple("Mixture", "moments frame off expected scatter mean error")):
     """The data of two gases that mix; all arrays are empty in a scene without such gases.
 
     ``moments : (moment,)`` are the times to measure at [time], ``off : (moment,)`` the distance of the nearest end of a
@@ -18,14 +18,6 @@ class Mixture(NamedTuple):
     theory, and its variance over that of independent draws; ``mean, error : (moment * bin,)`` the measured share and
     its standard error. ``Gauges.sides`` are the bins of the left and then of the right gas.
     """
-
-    moments: Any
-    frame: float
-    off: Any
-    expected: Any
-    scatter: Any
-    mean: Any
-    error: Any
 
 
 @kernel

@@ -1,6 +1,6 @@
 // The text under the box: what the picture shows, how it is drawn, and the provenance of the run.
 
-import { figure, spelled } from "./figure.js";
+import { figure } from "./figure.js";
 import { phrase, story, word } from "./words.js";
 
 const HOTTEST = 1e6;
@@ -20,10 +20,6 @@ function boxSentence({ box }, { walls: kelvins = box.wall_temperature, length = 
 
 // The small type; its parts contain numbers, so each part is translated as a phrase.
 const named = (footer) => footer.split(" · ").map((part, place) => (place > 1 ? phrase(part) : part)).join(" · ");
-
-// A setting as files write it, "-5 m s-1", as it is printed.
-const printed = (text) => String(text).replace(/^(-?)(\d[\d.]*(?:e[+-]?\d+)?)(?: (.*))?$/, (all, sign, digits, unit) =>
-  [`${sign && "−"}${digits}`, spelled(unit)].filter(Boolean).join(" "));
 
 const PARTS = ["modelled", "prescribed", "left_out", "exaggerated"];
 
@@ -59,7 +55,7 @@ export function showCaption(parent, runs) {
     [boxSentence(each, now), phrase(each.exaggeration), ...notes.map(phrase)]))].join(" ");
   const drawn = add("drawn", told());
   add("source", [...new Set(runs.map(({ footer }) => footer))].filter(Boolean).map(named).join(" | "));
-  if (!card && runs.length === 1) add("source", stage.settings.map(([name, value]) => `${name} ${printed(value)}`).join(", "));
+  if (!card && runs.length === 1) add("source", stage.settings.map((pair) => pair.join(" ")).join(", "));
   return (now) => {
     const words = told(now);
     if (drawn.textContent !== words) drawn.textContent = words;

@@ -66,8 +66,7 @@ class Box {
 
   greet() {
     const { stage } = this.told, { seed } = this;
-    const settings = stage.settings.map(([name, text]) => [name, name === "seed" ? String(seed) : text]);
-    say({ type: "stage", ...this.told, stage: { ...stage, seed, settings }, controls: this.controls(), state: this.state(), prediction: this.prediction });
+    say({ type: "stage", ...this.told, stage: { ...stage, seed }, controls: this.controls(), state: this.state(), prediction: this.prediction });
     this.look();
     say(this.state());
   }
