@@ -137,6 +137,12 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     )
 
 
+def first_bath_kT(walls: Walls) -> list[float]:
+    """Return the temperatures [energy] that the heat baths have at the start."""
+    starts = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    return [float(kT) for law, kT in starts if law == HEAT_BATH]
+
+
 @kernel(plain=True)
 def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     """Return the temperature of a wall [energy] at a time [time] since the start.

@@ -209,40 +209,30 @@ def double_rows(memory, rows, old):
     return True
 
 
+@kernel(plain=True)
+def _chosen(gas, now, layout, modes):
+    """Choose new cells, if these functions can; return whether they are chosen."""
+    shape = layout.shape
+    if modes.rows and modes.gravity:
+        return layout.due[0] == FOLLOW and follow_molecules(gas, layout, modes)
+    if modes.rows and modes.piston:
+        piston = gas.walls.piston
+        ceiling = piston[0] + piston[1] * (now - piston[2])
+        if layout.due[0] != CHOOSE or not choose_cells(ceiling, gas.molecules.size, gas.box, True, layout):
+            return False
+        shape[PLACES] = FEWEST
+        most = max(shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2])
+        if most >= layout.edge.shape[1] or not _has_memory(gas, layout, modes):
+            return False
+        write_cells(gas, layout, modes)
+        return True
+    return False
+
+
 @functools.cache
 def settling(modes: Modes) -> Callable[..., Any]:
     """Return the kernel ``settle`` of one set of modes."""
     place_all, _, _, _, refill = specialise(modes)
-
-    if modes.rows and modes.gravity:
-
-        @kernel(plain=True)
-        def chosen(gas, now, layout):
-            """Choose layers that follow the molecules; return whether that was possible."""
-            return layout.due[0] == FOLLOW and follow_molecules(gas, layout, modes)
-
-    elif modes.rows and modes.piston:
-
-        @kernel(plain=True)
-        def chosen(gas, now, layout):
-            """Choose cells for the present height of the ceiling; return whether that was possible."""
-            piston, shape = gas.walls.piston, layout.shape
-            ceiling = piston[0] + piston[1] * (now - piston[2])
-            if layout.due[0] != CHOOSE or not choose_cells(ceiling, gas.molecules.size, gas.box, True, layout):
-                return False
-            shape[PLACES] = FEWEST
-            most = max(shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2])
-            if most >= layout.edge.shape[1] or not _has_memory(gas, layout, modes):
-                return False
-            write_cells(gas, layout, modes)
-            return True
-
-    else:
-
-        @kernel(plain=True)
-        def chosen(gas, now, layout):
-            """Return False: this box keeps its cells."""
-            return False
 
     @kernel(plain=True)
     def settle(gas, now, layout):
@@ -250,7 +240,7 @@ def settling(modes: Modes) -> Callable[..., Any]:
         due, shape = layout.due, layout.shape
         while due[0] != NOTHING:
             if due[0] >= CHOOSE:
-                if not chosen(gas, now, layout):
+                if not _chosen(gas, now, layout, modes):
                     return False
                 due[0] = PLACE
             if due[0] == LENGTHEN:

@@ -38,17 +38,26 @@ from atmosbox.engine.liquid.drop_shape import (
     within,
 )
 from atmosbox.engine.liquid.insertion import Place, enter, has_room, move_to, place_at, take_out, withdraw
-from atmosbox.engine.liquid.moist import ceiling_at, renew
-from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, stays, wait
-
-_LEAVES = 1
+from atmosbox.engine.liquid.moist import ceiling_at
+from atmosbox.engine.liquid.reservoir import (
+    AIR_MET,
+    LEAVES,
+    THERMAL,
+    condense,
+    evaporate,
+    exchange,
+    leave,
+    renew,
+    stays,
+    wait,
+)
 
 
 @kernel
 def _renew(t, gas, drops, reservoir):
     """Compute the surface, or the rates of the drops, and draw the time at which the next molecule leaves."""
     if not drops.plain:
-        reservoir.clock[_LEAVES] = t + wait(leaving_rates(drops, reservoir), gas.tallies.random)
+        reservoir.clock[LEAVES] = t + wait(leaving_rates(drops, reservoir), gas.tallies.random)
         return
     surface = 0.0
     for k in range(drops.record.size):
@@ -232,7 +241,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         checked = 0
         while done < most:
             # events of molecules and drops, until a molecule leaves a drop or something meets one
-            due = reservoir.clock[_LEAVES]
+            due = reservoir.clock[LEAVES]
             status, some = proceed(gas, min(until, due), most - done, modes)
             done += some + 1
             if done - checked >= CHECK_EVERY:

@@ -26,20 +26,20 @@ from atmosbox.engine.exact.turning import Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, enter, find_place, withdraw
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
-    LIQUID,
+    LEAVES,
+    MAY_MEET,
     RAINED_ENERGY,
+    RAINS,
     THERMAL,
     condense,
     direction,
     emitted,
-    evaporation_rate,
     exchange,
     rain_out,
+    renew,
     stays,
     wait,
 )
-
-_MAY_MEET, _LEAVES, _RAINS = range(3)
 
 
 class MoistAscent(namedtuple("MoistAscent", "dry vapours rotations")):
@@ -78,13 +78,6 @@ def _volume(t, diameter, gas, reservoir, modes):
 
 
 @kernel
-def renew(t, state, reservoir):
-    """Draw the times at which the next molecule leaves the liquid, and at which the next one rains."""
-    reservoir.clock[_LEAVES] = t + wait(evaporation_rate(reservoir), state)
-    reservoir.clock[_RAINS] = t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
-
-
-@kernel
 def _next_meeting(t, gas, reservoir, modes):
     """Draw the time at which the next molecule may meet the mist."""
     if modes.pool:
@@ -92,7 +85,7 @@ def _next_meeting(t, gas, reservoir, modes):
     volume = _volume(t, reservoir.diameter, gas, reservoir, modes)
     reservoir.bound[1] = volume
     rate = gas.molecules.size * reservoir.area * reservoir.bound[0] / (4.0 * volume)
-    reservoir.clock[_MAY_MEET] = t + wait(rate, gas.tallies.random)
+    reservoir.clock[MAY_MEET] = t + wait(rate, gas.tallies.random)
 
 
 @kernel
@@ -189,7 +182,7 @@ def _proceed(gas, reservoir, until, most, modes):
     clock = reservoir.clock
     while done < most:
         # events of molecules, up to the next event of the liquid
-        due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
+        due = min(clock[MAY_MEET], clock[LEAVES], clock[RAINS])
         status, some = proceed(gas, min(until, due), most - done, modes)
         done += some + 1
         if done - checked >= CHECK_EVERY:
@@ -205,10 +198,10 @@ def _proceed(gas, reservoir, until, most, modes):
             continue
         if status != Status.DONE or due > until:
             return status, done
-        if clock[_MAY_MEET] == due:
+        if clock[MAY_MEET] == due:
             _may_meet(due, gas, reservoir, modes)
             _next_meeting(due, gas, reservoir, modes)
-        elif clock[_LEAVES] == due:
+        elif clock[LEAVES] == due:
             status = _emit(due, gas, reservoir, modes)
             if status != Status.DONE:
                 return status, done

@@ -25,15 +25,7 @@ from atmosbox.engine.exact.encounter import hit, kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.search import CONTACT
-from atmosbox.engine.wells.vicinity import (
-    bring_back,
-    enter,
-    is_inside,
-    renew,
-    set_inside,
-    time_to_leave_shell,
-    well_of,
-)  # fmt: skip
+from atmosbox.engine.wells.vicinity import bring_back, enter, is_inside, renew, set_inside, time_to_leave_shell, well_of
 
 SHELL = CONTACT + 4
 """Which event comes first: 0 to 5 a wall, 6 to 8 `CORE`, `CAPTURE` or `RELEASE` of a pair, 10 the end of the shell."""
