@@ -3,7 +3,7 @@ r"""Elementary functions from +, -, \*, /, square roots and whole-number arithme
 C libraries differ in the last digit of a logarithm, and so do numpy's own loops between processors. IEEE 754 fixes each
 of the five operations above to the last bit. So a function that is made of them alone, in one order, gives the same
 bits on every processor and in every browser, compiled or not. Each function here is within one unit in the last place
-of the true value, `lgamma` from 2 to 3 within 1.5 (a test compares them with 60-digit arithmetic).
+of the true value, `lgamma` from 2 on within 1.5 (a test compares them with 60-digit arithmetic).
 
 Python runs them as they are written; a kernel that calls them has them compiled into it: the bits are the same.
 `log_of_normal`, `log1p`, `expm1` and `circle` also take arrays when Python calls them.

@@ -108,13 +108,16 @@ class DsmcParcel(MarchingParcel):
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are after the last step, in the order of their indices."""
-        s = self._columns
-        # of many molecules, reading from random places is faster than writing to them
-        slot = np.empty(self._number, np.intp)
-        slot[s.identity] = np.arange(self._number)
+        s, slot = self._columns, self._slots()
         position, velocity = (np.stack([column[slot] for column in part], axis=1) for part in (s[:3], s[3:6]))
         spin = s.spin[slot] if self._rotates else np.zeros(self._number)
         return Snapshot(self.time, position, velocity, spin)
+
+    def _slots(self) -> Any:
+        """Return the slots in the order of molecules; of many, reading from them is faster than writing to them."""
+        slot = np.empty(self._number, np.intp)
+        slot[self._columns.identity] = np.arange(self._number)
+        return slot
 
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""

@@ -121,9 +121,7 @@ def advancing(modes: Modes, loops: Callable[[Modes], tuple[Callable[..., Any], .
     return passing(proceed, settle, wake, modes), settle
 
 
-def passing(
-    proceed: Callable[..., Any], settle: Callable[..., Any], wake: Callable[..., Any], modes: Modes
-) -> Callable[..., Any]:
+def passing(proceed: Callable[..., Any], settle: Callable[..., Any], wake: Callable[..., Any], modes: Modes) -> Any:
     """Return the kernel ``pass_time`` of a box.
 
     ``proceed`` resolves events up to a local time, ``settle`` does what is due in the cells, and ``wake`` tells the
@@ -176,5 +174,4 @@ def passing(
             if status != _DONE or not shifts:
                 return status, done
 
-    made: Callable[..., Any] = pass_time
-    return made
+    return pass_time

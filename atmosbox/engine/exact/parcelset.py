@@ -247,13 +247,12 @@ class ParcelSet(Parcel):
             self._calendar, self._box, self._walls, self._tallies,
         )  # fmt: skip
 
-    def _gas(self) -> Gas:
+    def _gas(self) -> Any:
         """Return all data of the kernels, with the present cells."""
-        made: Gas = layout.as_laid_out(self._data(), self._layout, self._modes)
-        return made
+        return layout.as_laid_out(self._data(), self._layout, self._modes)
 
     @property
-    def _clocks(self) -> Array:
+    def _clocks(self) -> Any:
         """The times of events that belong to no molecule: here there are none."""
         return _NO_CLOCKS
 

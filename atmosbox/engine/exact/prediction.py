@@ -45,9 +45,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
         # where the other molecule is at time t: it has flown freely since its own clock
         other = gas.molecules[j]
         dt = t - other.clock
-        wx = other.vx
-        wy = other.vy
-        wz = other.vz
+        wx, wy, wz = other.vx, other.vy, other.vz
         rx = at.x - other.x - dt * wx
         ry = at.y - other.y - dt * wy
         if modes.gravity:
@@ -57,22 +55,18 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
             rz = at.z - other.z - dt * wz
         rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
         distance = reach(radius, gas.kinds.table[other.kind].radius if modes.mixed else radius)
-        ux = at.vx - wx
-        uy = at.vy - wy
-        uz = at.vz - wz
+        ux, uy, uz = at.vx - wx, at.vy - wy, at.vz - wz
+        after = math.inf
         if modes.images:
             after = soonest_image(rx, ry, rz, ux, uy, uz, distance, gas.box)
-            if after < soonest and i != j:
-                soonest = after
-                partner = j
-            continue
-        discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
-        # most pairs miss and end here; a pair that overlaps by rounding and moves apart has b >= 0
-        if discriminant > 0.0:
-            after = predict(discriminant, b, c)
-            if after < soonest and b < 0.0 and i != j:
-                soonest = after
-                partner = j
+        else:
+            discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
+            # most pairs miss; a pair that overlaps by rounding and moves apart has b >= 0
+            if discriminant > 0.0 and b < 0.0:
+                after = predict(discriminant, b, c)
+        if after < soonest and i != j:
+            soonest = after
+            partner = j
     return Meeting(soonest, partner)
 
 
@@ -128,6 +122,19 @@ def next_move(slots, t, at, size, radius, gas, modes):
             what = CEILING
         time = min(time, time_c)
     return time, what
+
+
+@kernel
+def plan_move(i, t, at, gas, modes):
+    """Predict molecule i's next boundary or wall anew; its next contact stays as it was predicted."""
+    event = gas.events[i]
+    size, radius = size_and_radius(i, gas, modes)
+    time, what = next_move(slots_of(i, gas), t, at, size, radius, gas, modes)
+    time += t
+    if event.contact_time < time:
+        what = CONTACT
+    event.what = what
+    schedule(gas.calendar, i, min(time, event.contact_time))
 
 
 @kernel

@@ -9,7 +9,6 @@ largest speed of all, and a meeting is accepted with a probability proportional 
 
 import functools
 import math
-from collections import namedtuple
 from collections.abc import Callable
 from typing import Any
 
@@ -20,7 +19,7 @@ from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
-from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
+from atmosbox.engine.exact.exact import Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.turning import Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, enter, find_place, withdraw
@@ -40,14 +39,6 @@ from atmosbox.engine.liquid.reservoir import (
     stays,
     wait,
 )
-
-
-class MoistAscent(namedtuple("MoistAscent", "dry vapours rotations")):
-    """The data that the kernels need for moist air under a piston that follows a pressure.
-
-    ``dry``: the data for any air; ``vapours``: the number of molecules of vapour and liquid; ``rotations``: the
-    rotational degrees of freedom of all molecules together.
-    """
 
 
 @kernel
@@ -178,18 +169,14 @@ def _emit(t, gas, reservoir, modes):
 def _proceed(gas, reservoir, until, most, modes):
     """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and their number."""
     done = 0
-    checked = 0
     clock = reservoir.clock
     while done < most:
         # events of molecules, up to the next event of the liquid
         due = min(clock[MAY_MEET], clock[LEAVES], clock[RAINS])
         status, some = proceed(gas, min(until, due), most - done, modes)
         done += some + 1
-        if done - checked >= CHECK_EVERY:
-            _, t = next_event(gas.calendar)
-            if piled_up(min(t, due), done - checked, gas):
-                return Status.STALLED, done
-            checked = done
+        if piled_up(min(next_event(gas.calendar)[1], due), some + 1, gas):
+            return Status.STALLED, done
         if modes.pool and status == Status.MEETS_LIQUID:
             i, t = next_event(gas.calendar)
             _touch(i, t, motion_at(i, t, gas, modes), 0.0, gas, reservoir, modes)
@@ -212,14 +199,15 @@ def _proceed(gas, reservoir, until, most, modes):
 
 
 @kernel
-def _gauges(t, gas, reservoir, ascent):
+def _gauges(t, gas, moisture, ascent):
     """Return the `Gauges` of moist air at time t."""
+    reservoir = moisture.reservoir
     missing = reservoir.top[0]
     number = gas.molecules.size - missing
-    vapour = ascent.vapours - missing
+    vapour = moisture.vapours - missing
     condensed = reservoir.binding_energy * vapour + (reservoir.energy[THERMAL] + reservoir.energy[RAINED_ENERGY])
-    freedom = 3.0 + (ascent.rotations - reservoir.rotation * missing) / max(number, 1)
-    return gauges(t, number, freedom, condensed, gas, ascent.dry)
+    freedom = 3.0 + (moisture.rotations - reservoir.rotation * missing) / max(number, 1)
+    return gauges(t, number, freedom, condensed, gas, ascent)
 
 
 @kernel
@@ -252,19 +240,20 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         return status.value, done
 
     @kernel(entry=True)
-    def ascend(gas, reservoir, ascent, until, most):
+    def ascend(gas, moisture, ascent, until, most):
         """Do what ``advance`` does, and set the velocity of the piston whenever that is due."""
-        gas, reservoir, ascent = by_reference(gas), by_reference(reservoir), by_reference(ascent)
+        gas, moisture, ascent = by_reference(gas), by_reference(moisture), by_reference(ascent)
+        reservoir = moisture.reservoir
         done = 0
         while True:
-            stop, then = ahead(until, gas, ascent.dry)
+            stop, then = ahead(until, gas, ascent)
             status, some = _proceed(gas, reservoir, stop, most - done, modes)
             done += some
             if status != Status.DONE or then == Next.END:
                 return status.value, done
             if then == Next.CRUSHED:
                 return Status.CRUSHED.value, done
-            if not turn(stop, _gauges(stop, gas, reservoir, ascent), gas, ascent.dry, modes):
+            if not turn(stop, _gauges(stop, gas, moisture, ascent), gas, ascent, modes):
                 return Status.TURNED.value, done
             _wake(stop, gas, reservoir, modes)
 

@@ -11,7 +11,6 @@ from typing import Any
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.liquid import drop, moist
-from atmosbox.engine.liquid.moist import MoistAscent
 
 
 class Moisture(namedtuple("Moisture", "reservoir vapours rotations drops")):
@@ -35,7 +34,7 @@ def moist_loop(modes: Modes) -> tuple[Callable[..., Any], ...]:
         if modes.drops:
             return loop(gas, wet.drops, wet.reservoir, until, most)
         if modes.ascends:
-            return loop(gas, wet.reservoir, MoistAscent(ascent, wet.vapours, wet.rotations), until, most)
+            return loop(gas, wet, ascent, until, most)
         return loop(gas, wet.reservoir, until, most)
 
     @kernel(plain=True)
