@@ -39,7 +39,7 @@ def scramble(word):
 
     Examples
     --------
-    >>> scramble(np.uint64(1)) == scramble(np.uint64(2))
+    >>> bool(scramble(np.uint64(1)) == scramble(np.uint64(2)))
     False
     """
     return _mixed(word + STEP)

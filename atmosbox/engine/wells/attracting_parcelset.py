@@ -154,7 +154,7 @@ class AttractingParcelSet(ParcelSet):
         entry[: old.size] = old
         self._vicinity = self._vicinity._replace(entry=entry)
 
-    _gas = _data  # type: ignore[assignment]
+    _gas = _data
 
     @property
     def _clocks(self) -> Any:
