@@ -10,7 +10,7 @@ import numpy as np
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.exact.cells import append, overlapped, remove, shift, side
-from atmosbox.engine.exact.encounter import size_and_radius
+from atmosbox.engine.exact.encounter import size_and_radius, slots_of
 from atmosbox.engine.exact.prediction import Meeting, plan_move, soonest_in_cell
 
 
@@ -137,5 +137,5 @@ def cross(i, what, t, at, gas, modes):
     if modes.periodic and by != 0.0:
         shift(i, axis, by, gas)
     cells.slot[i, axis] = next_slot
-    plan_move(i, t, at, gas, modes)
+    plan_move(i, slots_of(i, gas), t, at, size, radius, gas, modes)
     return Crossed.ENTERED if enter else Crossed.LEFT

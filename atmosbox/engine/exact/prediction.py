@@ -56,17 +56,19 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
         rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
         distance = reach(radius, gas.kinds.table[other.kind].radius if modes.mixed else radius)
         ux, uy, uz = at.vx - wx, at.vy - wy, at.vz - wz
-        after = math.inf
         if modes.images:
             after = soonest_image(rx, ry, rz, ux, uy, uz, distance, gas.box)
-        else:
-            discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
-            # most pairs miss; a pair that overlaps by rounding and moves apart has b >= 0
-            if discriminant > 0.0 and b < 0.0:
-                after = predict(discriminant, b, c)
-        if after < soonest and i != j:
-            soonest = after
-            partner = j
+            if after < soonest and i != j:
+                soonest = after
+                partner = j
+            continue
+        discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
+        # most pairs miss and end here; a pair that overlaps by rounding and moves apart has b >= 0
+        if discriminant > 0.0:
+            after = predict(discriminant, b, c)
+            if after < soonest and b < 0.0 and i != j:
+                soonest = after
+                partner = j
     return Meeting(soonest, partner)
 
 
@@ -125,11 +127,10 @@ def next_move(slots, t, at, size, radius, gas, modes):
 
 
 @kernel
-def plan_move(i, t, at, gas, modes):
-    """Predict molecule i's next boundary or wall anew; its next contact stays as it was predicted."""
+def plan_move(i, slots, t, at, size, radius, gas, modes):
+    """Predict again when molecule i comes to a boundary or a wall; its next contact stays as it was predicted."""
     event = gas.events[i]
-    size, radius = size_and_radius(i, gas, modes)
-    time, what = next_move(slots_of(i, gas), t, at, size, radius, gas, modes)
+    time, what = next_move(slots, t, at, size, radius, gas, modes)
     time += t
     if event.contact_time < time:
         what = CONTACT

@@ -93,9 +93,10 @@ def replan_under(lowest, now, gas, modes):
         if modes.phases and math.isinf(gas.molecules[i].clock):
             continue
         size, radius = size_and_radius(i, gas, modes)
-        top = limits(slots_of(i, gas)[2], 2, size, radius, gas, modes)[1]
+        slots = slots_of(i, gas)
+        top = limits(slots[2], 2, size, radius, gas, modes)[1]
         if top >= lowest - radius or np.int64(gas.events[i].what) == CEILING:
-            plan_move(i, now, motion_at(i, now, gas, modes), gas, modes)
+            plan_move(i, slots, now, motion_at(i, now, gas, modes), size, radius, gas, modes)
 
 
 @kernel
