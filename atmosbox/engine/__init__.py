@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.core.parcel import Driver, Parcel, Snapshot
     from atmosbox.engine.core.random import RandomNumbers
     from atmosbox.engine.core.refusal import CoarseStepWarning, PackingError, RefusedError, StalledError
-    from atmosbox.engine.core.schedule import Constant, Ramp, Schedule, Steps
+    from atmosbox.engine.core.schedule import Ramp, Schedule
     from atmosbox.engine.core.walls import HeatBath, Periodic, Piston, Specular, Wall
     from atmosbox.engine.exact.parcelset import ParcelSet
     from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.start.overlap import clear_of_drops
     from atmosbox.engine.start.scatter import random_positions
     from atmosbox.engine.start.start import EqualSpeeds, Maxwell, Placed, Rotating, Scattered, Start
-    from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies, two_halves
+    from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies
     from atmosbox.engine.wells.attracting_parcelset import AttractingParcelSet
     from atmosbox.engine.wells.attraction import RandomBath, SquareWell
 
@@ -43,7 +43,7 @@ _HOMES = {
     "core.parcel": "Driver Parcel Snapshot",
     "core.random": "RandomNumbers",
     "core.refusal": "CoarseStepWarning PackingError RefusedError StalledError",
-    "core.schedule": "Constant Ramp Schedule Steps",
+    "core.schedule": "Ramp Schedule",
     "core.walls": "HeatBath Periodic Piston Specular Wall",
     "exact.parcelset": "ParcelSet",
     "liquid.substance": "Drops Liquid Mist Pool Substance",
@@ -51,19 +51,19 @@ _HOMES = {
     "start.overlap": "clear_of_drops",
     "start.scatter": "random_positions",
     "start.start": "EqualSpeeds Maxwell Placed Rotating Scattered Start",
-    "start.velocity": "equal_speeds maxwell_velocities rotational_energies two_halves",
+    "start.velocity": "equal_speeds maxwell_velocities rotational_energies",
     "wells.attracting_parcelset": "AttractingParcelSet",
     "wells.attraction": "RandomBath SquareWell",
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
-    "AttractingParcelSet", "CoarseStepWarning", "Constant", "Course", "Driver", "Drops", "EqualSpeeds",
+    "AttractingParcelSet", "CoarseStepWarning", "Course", "Driver", "Drops", "EqualSpeeds",
     "FollowPressure", "HeatBath", "Liquid", "Maxwell", "Mist", "PackingError", "Parcel", "ParcelSet", "Periodic",
     "Piston", "Placed", "Pool", "Ramp", "RandomBath", "RandomNumbers", "RefusedError", "Rotating", "Scattered",
-    "Schedule", "Snapshot", "Specular", "SquareWell", "StalledError", "Start", "Steps", "Substance", "Wall",
+    "Schedule", "Snapshot", "Specular", "SquareWell", "StalledError", "Start", "Substance", "Wall",
     "clear_of_drops", "equal_speeds", "lattice_positions", "maxwell_velocities", "packing_fraction", "random_positions",
-    "rotational_energies", "two_halves",
+    "rotational_energies",
 ]  # fmt: skip
 
 

@@ -114,13 +114,7 @@ def column_scale_height(mean_height: float, depth: float) -> float:
 
 
 def barometric_density(
-    height: ArrayLike,
-    molecules_per_area: float,
-    bottom: float,
-    top: float,
-    kT: float,
-    mass: float,
-    gravity: float,
+    height: ArrayLike, molecules_per_area: float, bottom: float, top: float, kT: float, mass: float, gravity: float
 ) -> FloatArray:
     """Return the number density at each height of a closed isothermal column of ideal gas [length^-3].
 

@@ -21,11 +21,7 @@ class CloudBase(NamedTuple):
 
 
 def measured_cloud_base(
-    pressure: ArrayLike,
-    vapor: ArrayLike,
-    condensed: ArrayLike,
-    covariance: ArrayLike,
-    least: float = 0.1,
+    pressure: ArrayLike, vapor: ArrayLike, condensed: ArrayLike, covariance: ArrayLike, least: float = 0.1
 ) -> CloudBase | None:
     """Return the pressure above which the water of rising air begins to stay liquid; None if there is no cloud base.
 

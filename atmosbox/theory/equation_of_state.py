@@ -16,25 +16,12 @@ from numpy.typing import ArrayLike
 from atmosbox.theory._array import FloatArray, as_floats, require_dimensions
 
 __all__ = [
-    "FREEZING_PACKING_FRACTION",
-    "FREEZING_PACKING_FRACTION_DISCS",
-    "collision_rate_discs",
-    "compressibility_factor",
-    "compressibility_factor_discs",
-    "contact_value",
-    "contact_value_discs",
-    "excess_chemical_potential",
-    "excess_chemical_potential_discs",
-    "excess_free_energy",
-    "excess_free_energy_discs",
-    "gas_pressure",
-    "gas_pressure_discs",
-    "hard_sphere_isentrope",
-    "inverse_compressibility",
-    "inverse_compressibility_discs",
-    "packing_fraction",
-    "packing_fraction_discs",
-]
+    "FREEZING_PACKING_FRACTION", "FREEZING_PACKING_FRACTION_DISCS", "collision_rate_discs", "compressibility_factor",
+    "compressibility_factor_discs", "contact_value", "contact_value_discs", "excess_chemical_potential",
+    "excess_chemical_potential_discs", "excess_free_energy", "excess_free_energy_discs", "gas_pressure",
+    "gas_pressure_discs", "hard_sphere_isentrope", "inverse_compressibility", "inverse_compressibility_discs",
+    "packing_fraction", "packing_fraction_discs",
+]  # fmt: skip
 
 Form = Literal["kolafa", "carnahan-starling"]
 
@@ -45,17 +32,7 @@ _HIGHEST_PACKING: dict[str, float] = {"kolafa": 1.03 * np.pi / 6.0, "carnahan-st
 
 # Z = sum of c_k x^k, x = phi / (1 - phi), k = 0 to 22 (Kolafa, Labík, Malijevský 2004).
 _COEFFICIENTS = np.zeros(23)
-_COEFFICIENTS[:9] = (
-    1.0,
-    4.0,
-    6.0,
-    2.3647684,
-    -0.8698551,
-    1.1062803,
-    -1.1014221,
-    0.66605866,
-    -0.03633431,
-)
+_COEFFICIENTS[:9] = (1.0, 4.0, 6.0, 2.3647684, -0.8698551, 1.1062803, -1.1014221, 0.66605866, -0.03633431)
 _COEFFICIENTS[[10, 14, 22]] = -0.20965164, 0.10555569, -0.00872380
 _SERIES = Polynomial(_COEFFICIENTS)
 _SERIES_SLOPE = _SERIES.deriv()
@@ -291,12 +268,7 @@ def gas_pressure_discs(number_density: ArrayLike, kT: ArrayLike, diameter: Array
     return density * as_floats(kT) * compressibility_factor_discs(packing)
 
 
-def collision_rate_discs(
-    number_density: ArrayLike,
-    diameter: ArrayLike,
-    kT: ArrayLike,
-    mass: ArrayLike,
-) -> FloatArray:
+def collision_rate_discs(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
     r"""Return the collision rate of one disc, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}` [time^-1].
 
     A gas of N discs has N/2 times as many collisions.

@@ -246,10 +246,8 @@ def _hydrostatic(
         pressure = held / float(_integral(fallen / kT, z)[-1]) * fallen
         return pressure, pressure / kT
     above = _integral(before[::-1], z)[::-1] * gravity
-    low, high = (
-        0.0,
-        2.0 * float(gas_pressure_discs(0.8 / packing_fraction_discs(1.0, gas.diameter), kT.max(), gas.diameter)),
-    )
+    densest = 0.8 / packing_fraction_discs(1.0, gas.diameter)
+    low, high = 0.0, 2.0 * float(gas_pressure_discs(densest, kT.max(), gas.diameter))
     for _ in range(50):
         top = 0.5 * (low + high)
         n = _density(gas, top + above, kT)
@@ -353,27 +351,16 @@ def growth_rates(
         along_u, along_w = d(mu) @ (-2.0 * k * one - 2.0 / 3.0 * gap_u), d(mu) @ (-2.0 / 3.0 * gap_w)
         shear_u, shear_w = d(mu) @ D, d(mu) * k
         up_u, up_w = d(mu) @ (-2.0 / 3.0 * gap_u), d(mu) @ (2.0 * D - 2.0 / 3.0 * gap_w)
+        conduction = D @ (d(conducts) @ D + d(conducts * steep / (2.0 * kT))) - k * k * d(conducts)
         left = np.block(
             [
                 [none, k * d(n), -D @ d(n), none],
                 [-k * d(kT), k * along_u + D @ shear_u, k * along_w + D @ shear_w, -k * d(n)],
                 [-D @ d(kT) - gravity * one, -k * shear_u + D @ up_u, -k * shear_w + D @ up_w, -D @ d(n)],
-                [
-                    none,
-                    -d(p) @ gap_u,
-                    -d(p) @ gap_w - d(n * warm * steep),
-                    D @ (d(conducts) @ D + d(conducts * steep / (2.0 * kT))) - k * k * d(conducts),
-                ],
+                [none, -d(p) @ gap_u, -d(p) @ gap_w - d(n * warm * steep), conduction],
             ]
         )
-        right = np.block(
-            [
-                [one, none, none, none],
-                [none, d(n), none, none],
-                [none, none, d(n), none],
-                [none, none, none, d(n * warm)],
-            ]
-        )
+        right = d(np.concatenate([np.ones(order + 1), n, n, n * warm]))
         size = order + 1
         for at, inward in ((0, -1.0), (order, 1.0)):  # the first point is at the ceiling
             for field, length in ((1, slip), (3, jump), (2, 0.0)):

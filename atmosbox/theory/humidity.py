@@ -23,19 +23,10 @@ from atmosbox.theory._water import (
 )
 
 __all__ = [
-    "BINDING_TEMPERATURE",
-    "LIQUID_HEAT_CAPACITY",
-    "VAPOR_HEAT_CAPACITY",
-    "WATER_MASS_RATIO",
-    "density_temperature",
-    "dewpoint",
-    "mixing_ratio",
-    "saturation_mixing_ratio",
-    "saturation_vapor_pressure",
-    "saturation_vapor_pressure_iapws",
-    "vapor_pressure",
-    "virtual_temperature",
-]
+    "BINDING_TEMPERATURE", "LIQUID_HEAT_CAPACITY", "VAPOR_HEAT_CAPACITY", "WATER_MASS_RATIO", "density_temperature",
+    "dewpoint", "mixing_ratio", "saturation_mixing_ratio", "saturation_vapor_pressure",
+    "saturation_vapor_pressure_iapws", "vapor_pressure", "virtual_temperature",
+]  # fmt: skip
 
 VAPOR_HEAT_CAPACITY: float = _water.VAPOR_HEAT
 """Heat capacity of a molecule of vapour at constant pressure [k]."""

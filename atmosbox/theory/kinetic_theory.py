@@ -22,23 +22,11 @@ from atmosbox.theory._array import FloatArray, as_floats, require_dimensions
 from atmosbox.theory.equation_of_state import compressibility_factor, contact_value, packing_fraction
 
 __all__ = [
-    "FreeMolecularSlab",
-    "WalledGas",
-    "collision_rate",
-    "collision_rate_between",
-    "contact_share",
-    "contact_value_between",
-    "emission_energy",
-    "emission_normal_speed",
-    "free_molecular_slab",
-    "maxwell_speed_cumulative",
-    "maxwell_speed_density",
-    "mean_free_path",
-    "mean_free_time",
-    "mean_speed",
-    "temperature_noise",
-    "walled_gas",
-]
+    "FreeMolecularSlab", "WalledGas", "collision_rate", "collision_rate_between", "contact_share",
+    "contact_value_between", "emission_energy", "emission_normal_speed", "free_molecular_slab",
+    "maxwell_speed_cumulative", "maxwell_speed_density", "mean_free_path", "mean_free_time", "mean_speed",
+    "temperature_noise", "walled_gas",
+]  # fmt: skip
 
 
 def mean_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:

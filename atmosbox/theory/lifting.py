@@ -68,9 +68,7 @@ def dry_adiabat_temperature(
 
 
 def dry_lapse_rate(
-    gravity: ArrayLike = STANDARD_GRAVITY,
-    specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
-    dof: float = 5,
+    gravity: ArrayLike = STANDARD_GRAVITY, specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT, dof: float = 5
 ) -> FloatArray:
     """Return the cooling of dry air per metre of lift, :math:`g / c_p` [K m^-1].
 

@@ -50,10 +50,8 @@ def residual(terms: Mapping[str, ArrayLike], start: float | None = None) -> NDAr
     """
     stores = [np.asarray(terms[name], float) for name in STORES if name in terms]
     given = {name: np.asarray(value, float) for name, value in terms.items() if name not in STORES}
-    each, sizes = ([made(value) for value in given.values()] for made in (np.asarray, np.abs))
-    if "heat_from_wall" in given:
-        place = list(given).index("heat_from_wall")
-        each[place], sizes[place] = each[place].sum(axis=-1), sizes[place].sum(axis=-1)
+    walls = {name: (-1,) if name == "heat_from_wall" else () for name in given}
+    each, sizes = ([made(given[name]).sum(axis=walls[name]) for name in given] for made in (np.asarray, np.abs))
     total, entered = np.asarray(sum(stores)), np.asarray(sum(each))
     begun = float((total - entered)[0]) if start is None else start
     # in deep wells a large kinetic and a large negative potential energy may have a small sum

@@ -352,18 +352,11 @@ def prefetch(typing_context, array, index):
 
     def generate(context, builder, signature, arguments):
         values = context.make_array(signature.args[0])(context, builder, arguments[0])
-        place = cgutils.pointer_add(
-            builder,
-            values.data,
-            builder.mul(arguments[1], builder.extract_value(values.strides, 0)),
-        )
+        offset = builder.mul(arguments[1], builder.extract_value(values.strides, 0))
+        place = cgutils.pointer_add(builder, values.data, offset, ir.IntType(8).as_pointer())
         i32 = ir.IntType(32)
-        place = builder.bitcast(place, ir.IntType(8).as_pointer())
-        function = cgutils.get_or_insert_function(
-            builder.module,
-            ir.FunctionType(ir.VoidType(), [place.type, i32, i32, i32]),
-            "llvm.prefetch.p0",
-        )
+        kind = ir.FunctionType(ir.VoidType(), [place.type, i32, i32, i32])
+        function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
         builder.call(function, [place, i32(0), i32(3), i32(1)])
         return context.get_dummy_value()
 
@@ -488,18 +481,10 @@ class LlvmText:
         flags.no_cfunc_wrapper = True
         flags.nrt = False
         flags.error_model = "numpy"
-        cpu_target.typing_context.refresh()
-        cpu_target.target_context.refresh()
-        made = compiler.compile_extra(
-            cpu_target.typing_context,
-            cpu_target.target_context,
-            kernel.py_func,
-            kinds,
-            None,
-            flags,
-            {},
-            pipeline_class=_KernelCompiler,
-        )
+        contexts = cpu_target.typing_context, cpu_target.target_context
+        for each in contexts:
+            each.refresh()
+        made = compiler.compile_extra(*contexts, kernel.py_func, kinds, None, flags, {}, pipeline_class=_KernelCompiler)
         with global_compiler_lock:
             made.library._ensure_finalized()
         return self._text[made.library.name], made.fndesc.llvm_func_name

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError, shown
-from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
+from atmosbox.engine.core.walls import PISTON, WALL_NAMES, first_bath_kT
 
 Array = NDArray[np.float64]
 
@@ -132,12 +132,7 @@ def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravit
     spacing = float(cbrt(math.prod(float(side) for side in sides) / max(n, 1)))
     total = sum(sum_of_squares(column) for column in v.T)
     speeds = [math.sqrt(total / n)] if n else []
-    if n:
-        speeds += [
-            math.sqrt(float(kT) / float(mass.mean()))
-            for kT, law in zip(walls.schedule_kT[walls.schedule[:-1]], walls.law, strict=True)
-            if law == HEAT_BATH
-        ]
+    speeds += [math.sqrt(kT / float(mass.mean())) for kT in first_bath_kT(walls) if n]
     if gravity > 0.0:
         speeds.append(math.sqrt(gravity * spacing))
     if walls.law[5] == PISTON:

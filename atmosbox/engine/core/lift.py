@@ -173,9 +173,10 @@ class FollowPressure:
 
     Examples
     --------
-    >>> follow = FollowPressure([0.0, 10.0], [1.0, 0.5], mean_free_time=1.0)
-    >>> round(follow.log_pressure(5.0), 6), round(math.log(math.sqrt(0.5)), 6)
-    (-0.346574, -0.346574)
+    The piston keeps each velocity for a quarter of a mean free time:
+
+    >>> FollowPressure([0.0, 10.0], [1.0, 0.5], mean_free_time=2.0).interval
+    0.5
     """
 
     def __init__(
@@ -203,10 +204,6 @@ class FollowPressure:
         self._memory = 100.0 * mean_free_time
         self._measured = np.array([excess, 0.0])
         self.course = Course(float(self._time[-1]))
-
-    def log_pressure(self, time: float) -> float:
-        """Return the logarithm of the pressure to follow at a time [time]."""
-        return float(interpolate(self.course.moment(time), self._time, self._log))
 
     def pressure(self, parcel: Parcel) -> float:
         """Return the pressure of the parcel [energy/length^3]."""

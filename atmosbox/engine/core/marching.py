@@ -5,9 +5,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
-from atmosbox.engine.core.parcel import Array, Parcel
+from atmosbox.engine.core.parcel import Parcel
 from atmosbox.engine.core.refusal import RefusedError, number
 from atmosbox.engine.core.walls import HEAT_BATH
 
@@ -112,18 +110,6 @@ class MarchingParcel(Parcel):
                 f"kT of a wall = {kT:.6g} is too hot for the step, which was chosen for {self._usual_kT:.6g}: give "
                 f"{_HOTTER * self._usual_kT:.6g} or less, or start the run with it"
             )
-
-    def _thermal_speeds(self, velocity: Array) -> Array:
-        """Return each molecule's sqrt(kT / m) for the highest temperature that is expected [length/time].
-
-        It is the highest of the temperature of the molecules at the start and the temperatures that the walls ever
-        have.
-        """
-        if not self._number:
-            return np.zeros(0)
-        dimensions = 2.0 if self._planar else 3.0
-        kT = float(np.sum(self._mass[:, None] * velocity**2)) / (dimensions * self._number)
-        return np.sqrt(self._warmest(kT) / self._mass)
 
     def _warmest(self, kT: float) -> float:
         """Return the highest of a temperature [energy] and the temperatures that the walls ever have."""

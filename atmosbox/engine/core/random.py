@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.elementary import circle, exp, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 
-_STEP = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
+STEP = np.uint64(0x9E3779B97F4A7C15)
+MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+MIX_2 = np.uint64(0x94D049BB133111EB)
 _WORD = (1 << 64) - 1
 RUN, START = range(2)
 """The uses of a seed: for what happens in the box, and for positions and velocities at the start."""
@@ -27,11 +27,28 @@ RUN, START = range(2)
 
 @kernel(plain=True)
 def _mixed(z):
-    """Return a number between 0 and 1, both excluded, from a word of the sequence; an array of them from an array."""
-    z = (z ^ (z >> np.uint64(30))) * _MIX_1
-    z = (z ^ (z >> np.uint64(27))) * _MIX_2
-    z = z ^ (z >> np.uint64(31))
-    return (np.float64(z >> np.uint64(12)) + 0.5) * (1.0 / 4503599627370496.0)
+    """Return the word of the sequence that follows from a state."""
+    z = (z ^ (z >> np.uint64(30))) * MIX_1
+    z = (z ^ (z >> np.uint64(27))) * MIX_2
+    return z ^ (z >> np.uint64(31))
+
+
+@kernel(plain=True)
+def scramble(word):
+    """Return a random word that depends on another word alone.
+
+    Examples
+    --------
+    >>> bool(scramble(np.uint64(1)) == scramble(np.uint64(2)))
+    False
+    """
+    return _mixed(word + STEP)
+
+
+@kernel(plain=True)
+def _number(state):
+    """Return a number between 0 and 1, both excluded, from a state; an array of them from an array."""
+    return (np.float64(_mixed(state) >> np.uint64(12)) + 0.5) * (1.0 / 4503599627370496.0)
 
 
 def new_state(seed: int, use: int = RUN) -> NDArray[np.uint64]:
@@ -42,12 +59,9 @@ def new_state(seed: int, use: int = RUN) -> NDArray[np.uint64]:
     >>> int(new_state(1)[0]) != int(new_state(1, START)[0])
     True
     """
-    state = 0x6A09E667F3BCC909 * (2 * use + 1) & _WORD
+    state = np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & _WORD)
     while True:
-        z = (state ^ (seed & _WORD)) + int(_STEP) & _WORD
-        for shift, factor in ((30, int(_MIX_1)), (27, int(_MIX_2))):
-            z = (z ^ (z >> shift)) * factor & _WORD
-        state = z ^ (z >> 31)
+        state = scramble(state ^ np.uint64(seed & _WORD))
         seed >>= 64
         if not seed:
             return np.array([state], np.uint64)
@@ -74,9 +88,9 @@ class RandomNumbers:
     def random(self, size: int | tuple[int, ...]) -> NDArray[np.float64]:
         """Return the next numbers between 0 and 1, both excluded, in an array of the shape ``size``."""
         number = math.prod(size) if isinstance(size, tuple) else size
-        words = self.state + _STEP * np.arange(1, number + 1, dtype=np.uint64)
+        words = self.state + STEP * np.arange(1, number + 1, dtype=np.uint64)
         self.state[:] = words[-1:] if number else self.state
-        return np.asarray(_mixed(words)).reshape(size)
+        return np.asarray(_number(words)).reshape(size)
 
 
 Source = RandomNumbers | np.random.Generator
@@ -113,8 +127,8 @@ def uniform(state):
     >>> 0.0 < uniform(np.array([7], np.uint64)) < 1.0
     True
     """
-    state[0] += _STEP
-    return _mixed(state[0])
+    state[0] += STEP
+    return _number(state[0])
 
 
 @kernel

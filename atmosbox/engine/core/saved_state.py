@@ -18,6 +18,7 @@ import ctypes
 import json
 import math
 from collections import namedtuple
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,7 +83,7 @@ class _Room:
         self._pieces = pieces
         self._laid_out: Pieces = {}
 
-    def array(self, view: _View) -> NDArray[Any]:
+    def array(self, view: _View, _: str = "") -> NDArray[Any]:
         """Return the array at a place, copying its piece of memory when it is first needed."""
         piece = self._laid_out.get(view.piece)
         if piece is None:
@@ -132,29 +133,23 @@ def pack(attributes: dict[str, Any]) -> tuple[dict[str, Any], Pieces]:
     (['whole'], (2,))
     """
     memory = _Memory()
-
-    def noted(value: Any, path: str) -> Any:
-        if isinstance(value, np.ndarray):
-            return memory.view(value, path)
-        if isinstance(value, list | tuple):
-            return _alike(value, [noted(part, f"{path}.{name}") for name, part in _parts(value)])
-        return value
-
-    return {name: noted(value, name) for name, value in attributes.items() if not callable(value)}, memory.pieces
+    kept = {name: value for name, value in attributes.items() if not callable(value)}
+    return {name: _changed(np.ndarray, memory.view, value, name) for name, value in kept.items()}, memory.pieces
 
 
 def unpack(noted: dict[str, Any], memory: Pieces) -> dict[str, Any]:
     """Return the attributes from the output of `pack`; arrays that shared memory share it again."""
     room = _Room(memory)
+    return {name: _changed(_View, room.array, note, name) for name, note in noted.items()}
 
-    def value(note: Any) -> Any:
-        if isinstance(note, _View):
-            return room.array(note)
-        if isinstance(note, list | tuple):
-            return _alike(note, [value(part) for part in note])
-        return note
 
-    return {name: value(note) for name, note in noted.items()}
+def _changed(kind: type, change: Callable[[Any, str], Any], value: Any, path: str) -> Any:
+    """Return a value in which all parts of one kind are changed, also those in lists and tuples."""
+    if isinstance(value, kind):
+        return change(value, path)
+    if isinstance(value, list | tuple):
+        return _alike(value, [_changed(kind, change, part, f"{path}.{name}") for name, part in _parts(value)])
+    return value
 
 
 def _parts(value: Any) -> list[tuple[str, Any]]:

@@ -1,7 +1,6 @@
 """Schedules: numbers that may change with time, such as the temperature of a heat bath."""
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -14,23 +13,6 @@ class Schedule(Protocol):
 
     def points(self) -> list[tuple[float, float]]:
         """Return the corners (time, value) of the polygon; it is constant before the first and after the last."""
-
-
-@dataclass(frozen=True)
-class Constant:
-    """A number that does not change with time.
-
-    Examples
-    --------
-    >>> Constant(2.0).points()
-    [(0.0, 2.0)]
-    """
-
-    value: float
-
-    def points(self) -> list[tuple[float, float]]:
-        """Return the one corner."""
-        return [(0.0, float(self.value))]
 
 
 @dataclass(frozen=True)
@@ -53,33 +35,6 @@ class Ramp:
         if not self.end > self.start:
             raise RefusedError(f"a ramp that starts at {self.start} must end later, not at {self.end}")
         return [(float(self.start), float(self.first)), (float(self.end), float(self.last))]
-
-
-@dataclass(frozen=True)
-class Steps:
-    """A step function: each value holds from its time until the next time.
-
-    Examples
-    --------
-    >>> Steps([0.0, 5.0], [1.0, 2.0]).points()
-    [(0.0, 1.0), (5.0, 1.0), (5.0, 2.0)]
-    """
-
-    times: Sequence[float]
-    values: Sequence[float]
-
-    def points(self) -> list[tuple[float, float]]:
-        """Return the corners: two at each step."""
-        if len(self.times) != len(self.values) or len(self.times) == 0:
-            raise RefusedError(
-                f"steps need as many values as times, at least one: {len(self.times)} times, {len(self.values)} values"
-            )
-        corners = [(float(self.times[0]), float(self.values[0]))]
-        for time, value in zip(self.times[1:], self.values[1:], strict=True):
-            if time <= corners[-1][0]:
-                raise RefusedError(f"the times of steps must increase: {time} follows {corners[-1][0]}")
-            corners += [(float(time), corners[-1][1]), (float(time), float(value))]
-        return corners
 
 
 def as_schedule(value: "float | Schedule", name: str) -> list[tuple[float, float]]:

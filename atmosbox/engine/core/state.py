@@ -10,17 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 MOLECULE = np.dtype(
-    [
-        ("x", "f8"),
-        ("y", "f8"),
-        ("z", "f8"),
-        ("vx", "f8"),
-        ("vy", "f8"),
-        ("vz", "f8"),
-        ("clock", "f8"),
-        ("count", "u4"),
-        ("kind", "u4"),
-    ]
+    [(name, "f8") for name in ("x", "y", "z", "vx", "vy", "vz", "clock")] + [("count", "u4"), ("kind", "u4")]
 )
 """One molecule, one 64-byte line of memory.
 
@@ -28,13 +18,8 @@ Its centre [length] and velocity [length/time] *at the time of its clock* [time]
 and its kind (a row of `Kinds`). These fields change only at an encounter.
 """
 
-EVENT = np.dtype(
-    {
-        "names": ["contact_time", "partner", "partner_count", "slot_x", "slot_y", "slot_z", "what"],
-        "formats": ["f8", "u4", "u4", "u2", "u2", "u2", "u1"],
-        "itemsize": 32,
-    }
-)
+_NAMES = ["contact_time", "partner", "partner_count", "slot_x", "slot_y", "slot_z", "what"]
+EVENT = np.dtype({"names": _NAMES, "formats": ["f8", "u4", "u4", "u2", "u2", "u2", "u1"], "itemsize": 32})
 """The next event of one molecule.
 
 The time of its next contact [time], the partner, and how many encounters the partner had had when that contact was

@@ -63,6 +63,7 @@ class Piston:
 
 
 Wall = Specular | Periodic | HeatBath | Piston
+_LAWS = {Specular: SPECULAR, Periodic: PERIODIC, HeatBath: HEAT_BATH, Piston: PISTON}
 
 
 def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
@@ -94,22 +95,16 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     # each law is checked and becomes a number, with its accommodation and the corners of its schedule
     for name, wall in zip(WALL_NAMES, walls, strict=True):
         corners, accommodation = [(0.0, 1.0)], 0.0
-        if isinstance(wall, Specular):
-            law = SPECULAR
-        elif isinstance(wall, Periodic):
-            law = PERIODIC
-        elif isinstance(wall, HeatBath):
-            law = HEAT_BATH
+        if type(wall) not in _LAWS:
+            raise RefusedError(f"wall {name} = {shown(wall)} is not a law: give Specular, Periodic, HeatBath or Piston")
+        if isinstance(wall, HeatBath):
             accommodation = number(wall.accommodation, f"accommodation of wall {name}", least=0.0, most=1.0)
             corners = as_schedule(wall.kT, f"kT of wall {name}")
         elif isinstance(wall, Piston):
-            law = PISTON
             if name != "z_high":
                 raise RefusedError(f"wall {name} cannot be a piston: only the ceiling, z_high, moves")
             velocity = number(wall.velocity, "velocity of the piston", least=-LARGEST, most=LARGEST)
-        else:
-            raise RefusedError(f"wall {name} = {shown(wall)} is not a law: give Specular, Periodic, HeatBath or Piston")
-        laws.append(law)
+        laws.append(_LAWS[type(wall)])
         accommodations.append(accommodation)
         schedules.append(corners)
     for axis in range(3):
@@ -135,6 +130,12 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
         piston=np.array([height, velocity, 0.0]),
         epoch=np.zeros(1),
     )
+
+
+def first_bath_kT(walls: Walls) -> list[float]:
+    """Return the temperatures [energy] that the heat baths have at the start."""
+    starts = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    return [float(kT) for law, kT in starts if law == HEAT_BATH]
 
 
 @kernel(plain=True)

@@ -45,6 +45,14 @@ class Grid(namedtuple("Grid", "number_x number_y number_z first place fastest"))
     """
 
 
+class Axis(namedtuple("Axis", "low high per_length last stride")):
+    """An axis along which molecules move: the lowest and highest coordinate of a centre [length], and the cells.
+
+    ``per_length``: number of cells per length [1/length], ``last``: index of the last cell, ``stride``: the step of
+    a cell's number from one cell to the next along the axis.
+    """
+
+
 class MoleculeKinds(namedtuple("MoleculeKinds", "mass radius rotation masses rotations")):
     """The properties of the molecules: mass [mass], radius [length], rotational degrees of freedom.
 
@@ -153,27 +161,34 @@ def number_present(columns, water):
 
 
 @kernel
-def cells_per_length(top, grid, gas, box):
-    """Return the number of cells per length along each axis [1/length], under a ceiling at ``top`` [length]."""
-    r = gas.radius
+def _axis(length, inverse, radius, number, stride):
+    """Return an `Axis`: between walls centres come no nearer to them than a radius."""
+    low = 0.0 if inverse > 0.0 else radius
+    high = length - low
+    return Axis(low, high, number / (high - low), number - 1, stride)
+
+
+@kernel
+def axes_of(top, grid, gas, box):
+    """Return the `Axis` of each direction, under a ceiling at ``top`` [length]."""
     return (
-        grid.number_x / (box.length_x if box.inverse_x > 0.0 else box.length_x - r - r),
-        grid.number_y / (box.length_y if box.inverse_y > 0.0 else box.length_y - r - r),
-        grid.number_z / (top if box.inverse_z > 0.0 else top - r - r),
+        _axis(box.length_x, box.inverse_x, gas.radius, grid.number_x, 1),
+        _axis(box.length_y, box.inverse_y, gas.radius, grid.number_y, grid.number_x),
+        _axis(top, box.inverse_z, gas.radius, grid.number_z, grid.number_x * grid.number_y),
     )
 
 
 @kernel
-def find_cell(p, per_x, per_y, per_z, columns, grid, gas, box):
+def place_along(u, axis):
+    """Return the index of a coordinate's cell along an axis, times the stride."""
+    return min(np.int32((u - axis.low) * axis.per_length), np.int32(axis.last)) * np.int32(axis.stride)
+
+
+@kernel
+def find_cell(p, axes, columns):
     """Compute the cell of the molecule in slot p, and store it."""
-    r = gas.radius
-    low_x = 0.0 if box.inverse_x > 0.0 else r
-    low_y = 0.0 if box.inverse_y > 0.0 else r
-    low_z = 0.0 if box.inverse_z > 0.0 else r
-    ix = min(np.int64((columns.x[p] - low_x) * per_x), grid.number_x - 1)
-    iy = min(np.int64((columns.y[p] - low_y) * per_y), grid.number_y - 1)
-    iz = min(np.int64((columns.z[p] - low_z) * per_z), grid.number_z - 1)
-    columns.cell[p] = (iz * grid.number_y + iy) * grid.number_x + ix
+    x, y, z = axes
+    columns.cell[p] = place_along(columns.x[p], x) + place_along(columns.y[p], y) + place_along(columns.z[p], z)
 
 
 @kernel

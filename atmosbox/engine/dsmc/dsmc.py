@@ -27,13 +27,13 @@ References
 
 import functools
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from atmosbox.engine.core.compiler import prange
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.random import MIX_1, scramble
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.walls import PISTON, SPECULAR
 from atmosbox.engine.dsmc.columns import (
@@ -41,7 +41,7 @@ from atmosbox.engine.dsmc.columns import (
     Air,
     Features,
     Step,
-    cells_per_length,
+    axes_of,
     count_by_cell,
     find_cell,
     index_by_cell,
@@ -51,22 +51,10 @@ from atmosbox.engine.dsmc.columns import (
     share_of,
 )
 from atmosbox.engine.dsmc.moist_columns import mist_step, pool_step
-from atmosbox.engine.dsmc.pairing import collide, scramble
-from atmosbox.engine.dsmc.streaming import WAITS, Axis, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
+from atmosbox.engine.dsmc.pairing import collide
+from atmosbox.engine.dsmc.streaming import WAITS, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
 
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _SHARED = 8  # number of steps after which cells are shared again among threads; results do not depend on it
-
-
-class Resolution(NamedTuple):
-    """The resolution of cells and steps: both numbers should stay below 1.
-
-    ``cell``: longest side of a cell, in mean free paths; ``step``: length of a step, in mean free times: both
-    of the densest layer of cells along any axis.
-    """
-
-    cell: float
-    step: float
 
 
 def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: str) -> tuple[int, int, int]:
@@ -91,18 +79,6 @@ def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: st
     return int(x), int(y), int(z)
 
 
-def densest_layer(x: NDArray[np.float64], low: float, side: float, layers: int) -> float:
-    """Return the largest density of a layer over the mean; the layers divide ``side`` from ``low`` on [length].
-
-    Examples
-    --------
-    >>> densest_layer(np.array([0.1, 0.2, 0.3, 0.9]), 0.0, 1.0, 2)
-    1.5
-    """
-    layer = np.minimum(((x - low) * (layers / side)).astype(np.int32), layers - 1)
-    return float(np.bincount(layer, minlength=layers).max()) * layers / len(x)
-
-
 @kernel
 def _move(thread, first, last, count, step, air, features):
     """Move a share of the molecules, block by block, and count them by cell."""
@@ -110,16 +86,8 @@ def _move(thread, first, last, count, step, air, features):
     columns, grid, gas, box, workspace = air.columns, air.grid, air.gas, air.box, air.workspace
     law, dt = air.walls.law, step.length
     queue, state = workspace.queue[thread], workspace.random[thread]
-    r = gas.radius
-    nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
-    per_x, per_y, per_z = cells_per_length(step.top, grid, gas, box)
-    # between walls centres come no nearer to them than a radius; along a periodic axis they reach the whole length
-    along_x = Axis(r, box.length_x - r, per_x, nx - 1, 1)
-    along_y = Axis(r, box.length_y - r, per_y, ny - 1, nx)
-    along_z = Axis(r, step.top - r, per_z, nz - 1, nx * ny)
-    round_x = Axis(0.0, box.length_x, per_x, nx - 1, 1)
-    round_y = Axis(0.0, box.length_y, per_y, ny - 1, nx)
-    round_z = Axis(0.0, box.length_z, per_z, nz - 1, nx * ny)
+    axes = axes_of(step.top, grid, gas, box)
+    along_x, along_y, along_z = axes
     smooth_x = law[0] == SPECULAR and law[1] == SPECULAR
     smooth_y = law[2] == SPECULAR and law[3] == SPECULAR
     # a block of molecules at a time, so that its data stay in the cache of the processor
@@ -138,19 +106,19 @@ def _move(thread, first, last, count, step, air, features):
         if box.inverse_z == 0.0:
             fall(z, vz, dt, mark, box.gravity, along_z, cell)
         else:
-            turn_round(z, vz, dt, mark, round_z, cell)
+            turn_round(z, vz, dt, mark, along_z, cell)
         if smooth_x:
             fold(x, vx, dt, mark, 1, along_x, cell)
         elif box.inverse_x == 0.0:
             glide(x, vx, dt, mark, along_x, cell)
         else:
-            turn_round(x, vx, dt, mark, round_x, cell)
+            turn_round(x, vx, dt, mark, along_x, cell)
         if smooth_y:
             fold(y, vy, dt, mark, 2, along_y, cell)
         elif box.inverse_y == 0.0:
             glide(y, vy, dt, mark, along_y, cell)
         else:
-            turn_round(y, vy, dt, mark, round_y, cell)
+            turn_round(y, vy, dt, mark, along_y, cell)
         marked = np.uint32(0)
         # few molecules are marked: those that hit a wall in this step, or wait at one, are treated one by one
         for q in range(e - b):  # writes a list without a branch
@@ -162,14 +130,14 @@ def _move(thread, first, last, count, step, air, features):
             q = np.int64(queue[k])
             p = b + q
             if mark[q] >= WAITS:
-                state[0] = scramble(step.key ^ (np.uint64(p) * _MIX_1))
+                state[0] = scramble(step.key ^ (np.uint64(p) * MIX_1))
                 bounce(p, step, air, state, counters, features)
             mass = gas.masses[columns.kind[p]] if features.wet else gas.mass
             if mark[q] & 1:
                 mirror(p, columns.x, columns.vx, 0, along_x.low, along_x.high, mass, counters)
             if mark[q] & 2:
                 mirror(p, columns.y, columns.vy, 2, along_y.low, along_y.high, mass, counters)
-            find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
+            find_cell(p, axes, columns)
         for q in range(e - b):
             count[np.uint32(cell[q])] += np.uint32(1)
 
@@ -225,7 +193,7 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
         for k in range(run.steps):
             start = (run.first + k) * dt
             top = ceilings[k + 1]
-            wall_key = scramble(tallies.random[0] + np.uint64(run.first + k) * _MIX_1)
+            wall_key = scramble(tallies.random[0] + np.uint64(run.first + k) * MIX_1)
             cell_key = scramble(wall_key)
             if wet:
                 number = number_present(columns, water)

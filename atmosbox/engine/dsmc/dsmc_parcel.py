@@ -14,7 +14,7 @@ from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError, number, shown, whole
 from atmosbox.engine.dsmc.columns import Columns, March, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
-from atmosbox.engine.dsmc.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
+from atmosbox.engine.dsmc.dsmc import numbers_of_cells, specialise
 from atmosbox.engine.dsmc.pairing import new_tries
 
 _REGROUP, _REGROUP_MANY, _MANY = 48, 16, 200_000
@@ -106,28 +106,18 @@ class DsmcParcel(MarchingParcel):
         """Whether the pressure is n kT: always true here, as there is no excluded volume."""
         return True
 
-    def resolution(self) -> Resolution:
-        """Return the resolution where the gas is densest now, at its present mean temperature."""
-        n, grid = self._number, self._grid
-        if not n:
-            return Resolution(0.0, 0.0)
-        sides = self._open_sides()
-        numbers = (grid.number_x, grid.number_y, grid.number_z)
-        crowding = max(map(densest_layer, (x[:n] for x in self._columns[:3]), self._low, sides, numbers))
-        path = self._path(float(math.prod(sides))) / crowding
-        speed = math.sqrt(8.0 / math.pi * self._mean_square_speed() / 3.0)
-        longest = max(side / cells for side, cells in zip(sides, numbers, strict=True))
-        return Resolution(longest / path, self._time_step * speed / path)
-
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are after the last step, in the order of their indices."""
-        s = self._columns
-        # of many molecules, reading from random places is faster than writing to them
-        slot = np.empty(self._number, np.intp)
-        slot[s.identity] = np.arange(self._number)
+        s, slot = self._columns, self._slots()
         position, velocity = (np.stack([column[slot] for column in part], axis=1) for part in (s[:3], s[3:6]))
         spin = s.spin[slot] if self._rotates else np.zeros(self._number)
         return Snapshot(self.time, position, velocity, spin)
+
+    def _slots(self) -> Any:
+        """Return the slots in the order of molecules; of many, reading from them is faster than writing to them."""
+        slot = np.empty(self._number, np.intp)
+        slot[self._columns.identity] = np.arange(self._number)
+        return slot
 
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
@@ -150,7 +140,6 @@ class DsmcParcel(MarchingParcel):
         n = self._number
         self._gas, kind = self._classify()
         self._cross_section = 4.0 * math.pi * self._gas.radius * self._gas.radius if self._collisions else 0.0
-        self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
         self._box = self._new_box()
         sides = self._open_sides()
         if self._room and not min(sides) > 0.0:

@@ -21,22 +21,22 @@ from collections import namedtuple
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.core.random import uniform
-from atmosbox.engine.dsmc.columns import Step, cells_per_length, find_cell, number_present
-from atmosbox.engine.dsmc.pairing import scramble
+from atmosbox.engine.core.random import scramble, uniform
+from atmosbox.engine.dsmc.columns import Step, axes_of, find_cell, number_present
 from atmosbox.engine.dsmc.streaming import bounce
 from atmosbox.engine.exact.calendar import new_calendar, next_event, schedule
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
-    LIQUID,
+    LEAVES,
+    RAINS,
     THERMAL,
     Reservoir,
     condense,
     direction,
     emitted,
-    evaporation_rate,
     exchange,
     rain_out,
+    renew,
     stays,
     wait,
 )
@@ -148,22 +148,16 @@ def _fastest(number, columns):
     return math.sqrt(max(a, b, c, d))
 
 
-@kernel
-def next_rain(t, reservoir, state):
-    """Return the time at which the next molecule rains [time]."""
-    return t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
-
-
 @kernel(entry=True)
 def mist_step(step, air, features):
     """Resolve the events of a mist, which moves with the air, in a step."""
     columns, gas, box, water = air.columns, air.gas, air.box, air.water
-    reservoir, state = water.reservoir, water.random
+    reservoir, state, clock = water.reservoir, water.random, water.reservoir.clock
     dt, ceiling, top = step.length, step.ceiling, step.top
     state[0] = scramble(~step.key)
     number = number_present(columns, water)
     r = gas.radius
-    per_x, per_y, per_z = cells_per_length(top, air.grid, gas, box)
+    axes = axes_of(top, air.grid, gas, box)
     volume = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
     volume *= box.length_y - (2.0 * r if box.inverse_y == 0.0 else 0.0)
     volume *= 0.5 * (ceiling + top) - (2.0 * r if box.inverse_z == 0.0 else 0.0)
@@ -171,10 +165,9 @@ def mist_step(step, air, features):
     rise = (top - ceiling) / dt
     bound = _fastest(number, columns) + abs(rise)
     meets = wait(number * often * bound, state)
-    leaves = wait(evaporation_rate(reservoir), state)
-    rains = next_rain(0.0, reservoir, state)
+    renew(0.0, state, reservoir)
     while True:
-        t = min(meets, leaves, rains)
+        t = min(meets, clock[LEAVES], clock[RAINS])
         if t > dt:
             break
         if t == meets:
@@ -192,22 +185,21 @@ def mist_step(step, air, features):
             else:
                 vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
                 bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
-        elif t == leaves:
+        elif t == clock[LEAVES]:
             p = number
             x = place(r, box.length_x, box.inverse_x, state)
             y = place(r, box.length_y, box.inverse_y, state)
             z = place(r, top, box.inverse_z, state)
             flow = rise * z / top
             emit(p, (x, y, z), flow, air, features)
-            find_cell(p, per_x, per_y, per_z, columns, air.grid, gas, box)
+            find_cell(p, axes, columns)
             number += 1
             vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
             bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
         else:
             rain_out(reservoir)
         meets = t + wait(number * often * bound, state)
-        leaves = t + wait(evaporation_rate(reservoir), state)
-        rains = next_rain(t, reservoir, state)
+        renew(t, state, reservoir)
 
 
 @kernel
@@ -243,20 +235,19 @@ def pool_step(step, air, features):
     """Resolve the events of a pool on the floor in a step, with the molecules that wait on it."""
     columns, gas, box, water = air.columns, air.gas, air.box, air.water
     reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, air.workspace.left
-    dt, ceiling, top = step.length, step.ceiling, step.top
+    dt, ceiling, top, clock = step.length, step.ceiling, step.top, reservoir.clock
     state[0] = scramble(~step.key)
     number = number_present(columns, water)
     counters = air.workspace.counters[air.workspace.counters.shape[0] - 1]
     rise = (top - ceiling) / dt
-    per_x, per_y, per_z = cells_per_length(top, air.grid, gas, box)
+    axes = axes_of(top, air.grid, gas, box)
     for p in range(number):
         if left[p] > 0.0:
             schedule(calendar, p, dt - left[p])
-    leaves = wait(evaporation_rate(reservoir), state)
-    rains = next_rain(0.0, reservoir, state)
+    renew(0.0, state, reservoir)
     while True:
         p, comes = next_event(calendar)
-        t = min(comes, leaves, rains)
+        t = min(comes, clock[LEAVES], clock[RAINS])
         if t > dt:
             break
         flies = False
@@ -272,7 +263,7 @@ def pool_step(step, air, features):
                 left[p] = _GONE
                 water.hole[water.holes[0]] = p
                 water.holes[0] += 1
-        elif t == leaves:
+        elif t == clock[LEAVES]:
             flies = True
             p = number
             if water.holes[0] > 0:
@@ -290,9 +281,8 @@ def pool_step(step, air, features):
             counters[0, 4] += gas.masses[columns.kind[p]] * columns.vz[p]
             rest = Step(step.start + t, dt - t, ceiling + rise * t, top, step.key)
             bounce(p, rest, air, state, counters, features)
-            find_cell(p, per_x, per_y, per_z, columns, air.grid, gas, box)
+            find_cell(p, axes, columns)
             if left[p] > 0.0:
                 schedule(calendar, p, dt - left[p])
-        leaves = t + wait(evaporation_rate(reservoir), state)
-        rains = next_rain(t, reservoir, state)
+        renew(t, state, reservoir)
     fill_holes(number, columns, left, water, features.rotates)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine.core.kind import classify
-from atmosbox.engine.core.parcel import Array, Snapshot
+from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.dsmc.columns import BLOCK, MoleculeKinds, new_workspace
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
@@ -68,12 +68,8 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         """Diameter of each molecule of the gas [length]."""
         return np.broadcast_to(np.float64(2.0 * self._gas.radius), self.number)
 
-    def snapshot(self) -> Snapshot:
-        """Return all molecules of the gas as they are after the last step, in the order of their indices."""
-        s, n = self._columns, self._number
-        order = np.argsort(s.identity[:n])
-        position, velocity = (np.stack([column[order] for column in s[k : k + 3]], axis=1) for k in (0, 3))
-        return Snapshot(self.time, position, velocity, s.spin[order] if self._rotates else np.zeros(n))
+    def _slots(self) -> Any:
+        return np.argsort(self._columns.identity[: self._number])
 
     def memory(self) -> int:
         """Return the memory of molecules, cells and liquid, and of sorting the molecules into cells [bytes]."""
@@ -139,10 +135,6 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
 
     def _thermal_speed(self) -> float:
         return math.sqrt(self._kT() / self._gas.mass)
-
-    def _mean_square_speed(self) -> float:
-        n = self._number
-        return sum(float(np.sum(v[:n] * v[:n])) for v in self._columns[3:6]) / max(n, 1)
 
     def _kT(self) -> float:
         """Return the kinetic temperature [energy]."""

@@ -16,11 +16,8 @@ import numpy as np
 
 from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
-from atmosbox.engine.core.random import uniform
+from atmosbox.engine.core.random import MIX_2, STEP, scramble, uniform
 
-_STEP = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
 _HALF = np.uint64(32)
 _LOW = np.uint64(0xFFFFFFFF)
 _FRACTION = 1.0 / 4294967296.0
@@ -46,21 +43,6 @@ def new_tries(threads: int) -> Tries:
     """Return an empty list for each thread, with extra memory at its end for what is fetched ahead."""
     room = (threads, _BATCH + 64)
     return Tries(np.zeros(room, np.uint64), np.zeros(room), *(np.zeros(room, np.uint32) for _ in range(5)))
-
-
-@kernel
-def scramble(word):
-    """Return a random word that depends on another word alone (see `random`).
-
-    Examples
-    --------
-    >>> scramble(np.uint64(1)) == scramble(np.uint64(2))
-    False
-    """
-    z = word + _STEP
-    z = (z ^ (z >> np.uint64(30))) * _MIX_1
-    z = (z ^ (z >> np.uint64(27))) * _MIX_2
-    return z ^ (z >> np.uint64(31))
 
 
 @kernel
@@ -180,13 +162,13 @@ def collide(thread, sweep, key, air, features):
     for c in range(workspace.cut[thread], workspace.cut[thread + 1]):
         inside = np.int64(grid.first[c + 1]) - np.int64(grid.first[c])
         most = grid.fastest[c]
-        seed = scramble(key + np.uint64(c) * _MIX_2)
+        seed = scramble(key + np.uint64(c) * MIX_2)
         left = np.int64(sweep * (inside * (inside - 1)) * most + np.int64(seed >> _HALF) * _FRACTION)
         while True:
             at = written & POSITIVE
             # one short loop per column: each becomes one store instruction
             for k in range(_WIDE):
-                word[at + k] = seed + np.uint64(k) * _STEP
+                word[at + k] = seed + np.uint64(k) * STEP
             for k in range(_WIDE):
                 bar[at + k] = most
             for k in range(_WIDE):
@@ -199,7 +181,7 @@ def collide(thread, sweep, key, air, features):
             if left <= _WIDE:
                 break
             left -= _WIDE
-            seed += np.uint64(_WIDE) * _STEP
+            seed += np.uint64(_WIDE) * STEP
     _draw(written, thread, tries, grid.first, order)
     collisions += _meet(written, thread, air, features)
     workspace.met[thread, 0] = collisions

@@ -10,26 +10,18 @@ too hot.
 """
 
 import math
-from collections import namedtuple
 
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.walls import PISTON, resolve_wall_hit
+from atmosbox.engine.dsmc.columns import place_along
 
 WAITS = 4
 """The mark of a molecule that waits. Smaller marks, 1 and 2, tell the axes along which it is folded, x, y or both."""
 
 _MOST_HITS = 1000
-
-
-class Axis(namedtuple("Axis", "low high per_length last stride")):
-    """An axis along which molecules move: the lowest and highest coordinate of a centre [length], and the cells.
-
-    ``per_length``: number of cells per length [1/length], ``last``: index of the last cell, ``stride``: the step of
-    a cell's number from one cell to the next along the axis.
-    """
 
 
 @kernel
@@ -69,9 +61,7 @@ def fall(z, v, dt, mark, gravity, axis, cell):
     """
     gain = gravity * dt
     drop = 0.5 * gain * dt
-    low, high, per_length = axis.low, axis.high, axis.per_length
-    most = np.int32(axis.last)
-    step = np.int32(axis.stride)
+    low, high = axis.low, axis.high
     for p in range(z.size):
         ahead = z[p] + v[p] * dt
         there = ahead - drop
@@ -79,7 +69,7 @@ def fall(z, v, dt, mark, gravity, axis, cell):
         z[p] = z[p] if waits else there
         v[p] = v[p] if waits else v[p] - gain
         mark[p] = np.int32(WAITS) if waits else np.int32(0)
-        cell[p] += min(np.int32((there - low) * per_length), most) * step
+        cell[p] += place_along(there, axis)
 
 
 @kernel
@@ -92,14 +82,13 @@ def fold(x, v, dt, mark, sign, axis, cell):
     --------
     The second molecule flies to 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
 
+    >>> from atmosbox.engine.dsmc.columns import Axis
     >>> x, v, mark, cell = np.array([0.5, 1.5]), np.ones(2), np.zeros(2, np.int32), np.zeros(2, np.uint32)
     >>> fold(x, v, 1.0, mark, 1, Axis(0.0, 2.0, 2.0, 3, 1), cell)
     >>> x, v, mark, cell
     (array([1.5, 1.5]), array([ 1., -1.]), array([0, 1], dtype=int32), array([3, 3], dtype=uint32))
     """
-    low, high, per_length = axis.low, axis.high, axis.per_length
-    most = np.int32(axis.last)
-    step = np.int32(axis.stride)
+    low, high = axis.low, axis.high
     for p in range(x.size):
         there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
         below = there < low
@@ -108,7 +97,7 @@ def fold(x, v, dt, mark, sign, axis, cell):
         x[p] = there
         v[p] = -v[p] if below | above else v[p]
         mark[p] |= np.int32(sign) if below | above else np.int32(0)
-        cell[p] += min(np.int32((there - low) * per_length), most) * step
+        cell[p] += place_along(there, axis)
 
 
 @kernel
@@ -141,27 +130,23 @@ def mirror(p, x, v, wall, low, high, mass, counters):
 @kernel
 def glide(x, v, dt, mark, axis, cell):
     """Move those that do not wait uniformly between walls: see `fold`."""
-    low, high, per_length = axis.low, axis.high, axis.per_length
-    most = np.int32(axis.last)
-    step = np.int32(axis.stride)
+    low, high = axis.low, axis.high
     for p in range(x.size):
         there = min(max(x[p] + (v[p] * dt if mark[p] < WAITS else 0.0), low), high)
         x[p] = there
-        cell[p] += min(np.int32((there - low) * per_length), most) * step
+        cell[p] += place_along(there, axis)
 
 
 @kernel
 def turn_round(x, v, dt, mark, axis, cell):
     """Move those that do not wait uniformly along a periodic axis: see `fold`."""
-    most = np.int32(axis.last)
-    step = np.int32(axis.stride)
-    length, per_length = axis.high, axis.per_length
+    length = axis.high
     inverse = 1.0 / length
     for p in range(x.size):
         there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
         there = min(max(there - length * math.floor(there * inverse), 0.0), length)
         x[p] = there
-        cell[p] += min(np.int32(there * per_length), most) * step
+        cell[p] += place_along(there, axis)
 
 
 @kernel

@@ -90,19 +90,12 @@ def dry_loop(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``advance``, ``draw`` and ``wake`` of a box without liquid."""
     loop = specialise(modes)[1]
 
-    if modes.ascends:
-
-        @kernel(plain=True)
-        def advance(gas, ascent, book, until, most):
-            """Resolve events, and change the velocity of the piston when it is due."""
+    @kernel(plain=True)
+    def advance(gas, ascent, book, until, most):
+        """Resolve events, and change the velocity of a piston that follows a pressure when it is due."""
+        if modes.ascends:
             return loop(gas, ascent, until, most)
-
-    else:
-
-        @kernel(plain=True)
-        def advance(gas, ascent, book, until, most):
-            """Resolve events."""
-            return loop(gas, until, most)
+        return loop(gas, until, most)
 
     @kernel(plain=True)
     def wake(gas, book, speed):
@@ -117,39 +110,22 @@ def advancing(modes: Modes, loops: Callable[[Modes], tuple[Callable[..., Any], .
     advance, _, wake = loops(modes)
     settle = settling(modes)
 
-    if modes.ascends:
-
-        @kernel(plain=True)
-        def proceed(gas, ascent, book, layout, until, most):
-            """Resolve events, and change the velocity of the piston when it is due."""
-            here = ascent_of(ascent, book, layout.filled[0])
-            return advance(as_laid_out(gas, layout, modes), here, book, until, most)
-
-    else:
-
-        @kernel(plain=True)
-        def proceed(gas, ascent, book, layout, until, most):
-            """Resolve events."""
-            return advance(as_laid_out(gas, layout, modes), ascent, book, until, most)
+    @kernel(plain=True)
+    def proceed(gas, ascent, book, layout, until, most):
+        """Resolve events in the cells as they are laid out."""
+        here = as_laid_out(gas, layout, modes)
+        if modes.ascends:
+            return advance(here, ascent_of(ascent, book, layout.filled[0]), book, until, most)
+        return advance(here, ascent, book, until, most)
 
     return passing(proceed, settle, wake, modes), settle
 
 
-def passing(
-    proceed: Callable[..., Any], settle: Callable[..., Any], wake: Callable[..., Any], modes: Modes
-) -> Callable[..., Any]:
+def passing(proceed: Callable[..., Any], settle: Callable[..., Any], wake: Callable[..., Any], modes: Modes) -> Any:
     """Return the kernel ``pass_time`` of a box.
 
-    Parameters
-    ----------
-    proceed
-        Resolves events up to a local time.
-    settle
-        Does what is due in the cells.
-    wake
-        Tells the liquid that molecules may now be faster.
-    modes
-        The features of the box.
+    ``proceed`` resolves events up to a local time, ``settle`` does what is due in the cells, and ``wake`` tells the
+    liquid that molecules may now be faster.
     """
 
     @kernel(plain=True)
@@ -198,5 +174,4 @@ def passing(
             if status != _DONE or not shifts:
                 return status, done
 
-    made: Callable[..., Any] = pass_time
-    return made
+    return pass_time

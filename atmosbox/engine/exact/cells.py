@@ -60,13 +60,11 @@ def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArra
     """
     distinct = np.unique(radius)
     starts: list[float] = []
-    tops: list[float] = []
     for value in distinct:
         if not starts or value > 1.1 * starts[-1]:
             starts.append(float(value))
-            tops.append(float(value))
-        tops[-1] = float(value)
-    return np.searchsorted(np.array(starts), radius, side="right") - 1, np.array(tops)
+    size = np.searchsorted(np.array(starts), radius, side="right") - 1
+    return size, np.array([float(radius[size == k].max()) for k in range(len(starts))])
 
 
 def choose_grid(

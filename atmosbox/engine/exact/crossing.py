@@ -9,11 +9,9 @@ import numpy as np
 
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.state import Motion
-from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.cells import append, overlapped, remove, shift, side
-from atmosbox.engine.exact.encounter import size_and_radius
-from atmosbox.engine.exact.prediction import Meeting, next_move, soonest_in_cell
-from atmosbox.engine.exact.search import CONTACT
+from atmosbox.engine.exact.encounter import size_and_radius, slots_of
+from atmosbox.engine.exact.prediction import Meeting, plan_move, soonest_in_cell
 
 
 class Crossed(IntEnum):
@@ -104,10 +102,9 @@ def cross(i, what, t, at, gas, modes):
     base = cell * (across if axis == 0 else (cells.number_z if axis == 1 else 1))
     stride = cells.stride
     event = gas.events[i]
-    contact_time = event.contact_time
     # on entering: is a member of the new cells met before the known contact? Nothing is changed until all have room
     if enter and modes.contacts:
-        meeting = Meeting(contact_time - t, -1)
+        meeting = Meeting(event.contact_time - t, -1)
         full = False
         for q in range(first_1, first_1 + span_1):
             if modes.periodic and q >= number_1:
@@ -121,8 +118,7 @@ def cross(i, what, t, at, gas, modes):
         if full:
             return Crossed.FULL
         if meeting.partner >= 0:
-            contact_time = t + meeting.after
-            event.contact_time = contact_time
+            event.contact_time = t + meeting.after
             event.partner = meeting.partner
             event.partner_count = gas.molecules[meeting.partner].count
     if modes.contacts:
@@ -141,11 +137,5 @@ def cross(i, what, t, at, gas, modes):
     if modes.periodic and by != 0.0:
         shift(i, axis, by, gas)
     cells.slot[i, axis] = next_slot
-    slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
-    time, what = next_move(slots, t, at, size, radius, gas, modes)
-    time += t
-    if contact_time < time:
-        what = CONTACT
-    event.what = what
-    schedule(gas.calendar, i, min(time, contact_time))
+    plan_move(i, slots_of(i, gas), t, at, size, radius, gas, modes)
     return Crossed.ENTERED if enter else Crossed.LEFT

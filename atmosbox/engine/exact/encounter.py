@@ -32,12 +32,8 @@ def motion_at(i, t, gas, modes):
 def write(i, t, at, gas):
     """Set position and velocity of molecule i at time t; all contacts predicted with it become stale."""
     molecule = gas.molecules[i]
-    molecule.x = at.x
-    molecule.y = at.y
-    molecule.z = at.z
-    molecule.vx = at.vx
-    molecule.vy = at.vy
-    molecule.vz = at.vz
+    molecule.x, molecule.y, molecule.z = at.x, at.y, at.z
+    molecule.vx, molecule.vy, molecule.vz = at.vx, at.vy, at.vz
     molecule.clock = t
     molecule.count += 1
 
@@ -72,9 +68,7 @@ def meet(i, j, t, at, gas, modes):
     box, tallies = gas.box, gas.tallies
     other = motion_at(j, t, gas, modes)
     rx, ry, rz = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, box, modes)
-    ux = at.vx - other.vx
-    uy = at.vy - other.vy
-    uz = at.vz - other.vz
+    ux, uy, uz = at.vx - other.vx, at.vy - other.vy, at.vz - other.vz
     mass, _, rotation = kind_of(i, gas, modes)
     other_mass, _, other_rotation = kind_of(j, gas, modes)
     dx, dy, dz = resolve(rx, ry, rz, ux, uy, uz, mass, other_mass)

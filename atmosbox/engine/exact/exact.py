@@ -22,7 +22,7 @@ from atmosbox.engine.core.jit import POSITIVE, by_reference, kernel, prefetch
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.calendar import next_event
-from atmosbox.engine.exact.cells import shift, slots_at, turns_past
+from atmosbox.engine.exact.cells import slots_at, turns_past
 from atmosbox.engine.exact.crossing import Crossed, cross, is_wall
 from atmosbox.engine.exact.encounter import hit, meet, motion_at, size_and_radius
 from atmosbox.engine.exact.membership import Change, change, listed, places
@@ -62,11 +62,12 @@ _FLOOR, _CEILING = 4, 5
 
 
 @kernel
-def _fetch_ahead(gas):
+def fetch_ahead(gas, also, start, step):
     """Ask the processor for the data of the molecules whose events may come next, before they are needed.
 
-    These are the molecules in the nodes 2 to 7 of the calendar's tree. Each node holds the molecule of the earlier
-    event of the two nodes below it, so the next event of all is in node 1::
+    Number ``start + step * i`` of the array ``also`` belongs to molecule i. These are the molecules in the nodes 2 to 7
+    of the calendar's tree. Each node holds the molecule of the earlier event of the two nodes below it, so the next
+    event of all is in node 1::
 
                   1
               2       3
@@ -77,7 +78,7 @@ def _fetch_ahead(gas):
         i = np.int64(calendar.winner[node])
         prefetch(gas.molecules, i)
         prefetch(gas.events, i)
-        prefetch(calendar.time, calendar.leaf + i)
+        prefetch(also, start + step * i)
 
 
 @kernel
@@ -111,7 +112,7 @@ def proceed(gas, until, most, modes):
         if done & (CHECK_EVERY - 1) == CHECK_EVERY - 1 and piled_up(t, CHECK_EVERY, gas):
             status = Status.STALLED
             break
-        _fetch_ahead(gas)
+        fetch_ahead(gas, gas.calendar.time, gas.calendar.leaf, 1)
         event = gas.events[i]
         what = np.int64(event.what)
         # fly the molecule from its own clock to the event: no other molecule moves
@@ -172,21 +173,9 @@ def proceed(gas, until, most, modes):
         if full:
             status = Status.FULL
             break
-    tallies.count[0] += contacts
-    tallies.count[1] += entered
-    tallies.count[2] += left
-    tallies.count[3] += stale
-    tallies.count[4] += wall_hits
+    for k, more in enumerate((contacts, entered, left, stale, wall_hits)):
+        tallies.count[k] += more
     return status, done
-
-
-@kernel
-def _into_box(i, axis, u, size, gas):
-    """Return a coordinate brought back into a periodic box, from the lowest boundary on; update the molecule."""
-    turns = turns_past(u, axis, size, gas)
-    if turns != 0.0:
-        shift(i, axis, -turns, gas)
-    return u - turns
 
 
 @functools.cache
@@ -205,8 +194,13 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 continue
             at = motion_at(i, now, gas, modes)
             size, _ = size_and_radius(i, gas, modes)
-            x, y = _into_box(i, 0, at.x, size, gas), _into_box(i, 1, at.y, size, gas)
-            slots = slots_at(x, y, _into_box(i, 2, at.z, size, gas), size, cells, modes)
+            # brought back into a periodic box, from the lowest boundary on
+            dx, dy, dz = turns_past(at.x, 0, size, gas), turns_past(at.y, 1, size, gas), turns_past(at.z, 2, size, gas)
+            molecule = gas.molecules[i]
+            molecule.x -= dx
+            molecule.y -= dy
+            molecule.z -= dz
+            slots = slots_at(at.x - dx, at.y - dy, at.z - dz, size, cells, modes)
             cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = slots
             call(i, now, gas)
             if modes.contacts and not modes.rows:
@@ -236,8 +230,7 @@ def _checking(modes: Modes) -> Any:
         gas = by_reference(gas)
         cells = gas.cells
         deepest = -1.0
-        first = -1
-        second = -1
+        first = second = -1
         for cell in range(cells.number_x * cells.number_y * cells.number_z):
             start = (cell * cells.stride) & POSITIVE
             for p in range(places(start, cells, modes)):
@@ -253,9 +246,7 @@ def _checking(modes: Modes) -> Any:
                     distance = reach(radius, other_radius)
                     depth = 1.0 - math.sqrt(rx * rx + ry * ry + rz * rz) / distance if distance > 0.0 else -1.0
                     if depth > deepest:
-                        deepest = depth
-                        first = min(i, j)
-                        second = max(i, j)
+                        deepest, first, second = depth, min(i, j), max(i, j)
         return deepest, first, second
 
     return overlap

@@ -7,7 +7,6 @@ too little, `settling` says so. Then Python makes more and calls again; a page s
 import functools
 import math
 from collections import namedtuple
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,14 +15,7 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Cells, Copies, Gas, Modes, aligned_records
 from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.row_cells import (
-    TALLER,
-    cell_numbers,
-    widths_for_rows,
-    write_even_layers,
-    write_layers,
-    write_slots,
-)
+from atmosbox.engine.exact.row_cells import TALLER, cell_numbers, write_even_layers, write_layers, write_slots
 from atmosbox.engine.exact.rows import FEWEST, MORE, MOST, describe_cells, row_stride
 
 PLACES, NUMBER, LAST = 0, 1, 4
@@ -121,9 +113,8 @@ def choose_cells(filled, molecules, box, moving, layout):
     """
     length = (box.length_x, box.length_y, TALLER * filled if moving else filled)
     periodic = (box.inverse_x != 0.0, box.inverse_y != 0.0, box.inverse_z != 0.0)
-    width = widths_for_rows(box.length_x, box.length_y, filled, layout.radius[0], molecules, box.planar)
-    largest = layout.radius[layout.radius.size - 1]
-    found = cell_numbers(length, filled, width, largest, molecules, periodic, box.planar)
+    radii = layout.radius[0], layout.radius[layout.radius.size - 1]
+    found = cell_numbers(length, filled, radii, molecules, periodic, box.planar)
     for axis in range(3):
         layout.shape[NUMBER + axis] = found[axis]
     layout.filled[0] = filled
@@ -209,40 +200,30 @@ def double_rows(memory, rows, old):
     return True
 
 
+@kernel(plain=True)
+def _chosen(gas, now, layout, modes):
+    """Choose new cells, if these functions can; return whether they are chosen."""
+    shape = layout.shape
+    if modes.rows and modes.gravity:
+        return layout.due[0] == FOLLOW and follow_molecules(gas, layout, modes)
+    if modes.rows and modes.piston:
+        piston = gas.walls.piston
+        ceiling = piston[0] + piston[1] * (now - piston[2])
+        if layout.due[0] != CHOOSE or not choose_cells(ceiling, gas.molecules.size, gas.box, True, layout):
+            return False
+        shape[PLACES] = FEWEST
+        most = max(shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2])
+        if most >= layout.edge.shape[1] or not _has_memory(gas, layout, modes):
+            return False
+        write_cells(gas, layout, modes)
+        return True
+    return False
+
+
 @functools.cache
-def settling(modes: Modes) -> Callable[..., Any]:
+def settling(modes: Modes) -> Any:
     """Return the kernel ``settle`` of one set of modes."""
     place_all, _, _, _, refill = specialise(modes)
-
-    if modes.rows and modes.gravity:
-
-        @kernel(plain=True)
-        def chosen(gas, now, layout):
-            """Choose layers that follow the molecules; return whether that was possible."""
-            return layout.due[0] == FOLLOW and follow_molecules(gas, layout, modes)
-
-    elif modes.rows and modes.piston:
-
-        @kernel(plain=True)
-        def chosen(gas, now, layout):
-            """Choose cells for the present height of the ceiling; return whether that was possible."""
-            piston, shape = gas.walls.piston, layout.shape
-            ceiling = piston[0] + piston[1] * (now - piston[2])
-            if layout.due[0] != CHOOSE or not choose_cells(ceiling, gas.molecules.size, gas.box, True, layout):
-                return False
-            shape[PLACES] = FEWEST
-            most = max(shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2])
-            if most >= layout.edge.shape[1] or not _has_memory(gas, layout, modes):
-                return False
-            write_cells(gas, layout, modes)
-            return True
-
-    else:
-
-        @kernel(plain=True)
-        def chosen(gas, now, layout):
-            """Return False: this box keeps its cells."""
-            return False
 
     @kernel(plain=True)
     def settle(gas, now, layout):
@@ -250,7 +231,7 @@ def settling(modes: Modes) -> Callable[..., Any]:
         due, shape = layout.due, layout.shape
         while due[0] != NOTHING:
             if due[0] >= CHOOSE:
-                if not chosen(gas, now, layout):
+                if not _chosen(gas, now, layout, modes):
                     return False
                 due[0] = PLACE
             if due[0] == LENGTHEN:
@@ -285,5 +266,4 @@ def settling(modes: Modes) -> Callable[..., Any]:
                 due[0] = NOTHING
         return True
 
-    made: Callable[..., Any] = settle
-    return made
+    return settle

@@ -17,7 +17,7 @@ from atmosbox.engine.core.packing import refuse_solid
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError, number
 from atmosbox.engine.core.state import EVENT, MOLECULE, Cells, Gas, Modes, aligned_records
-from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
+from atmosbox.engine.core.walls import PISTON, POOL, first_bath_kT
 from atmosbox.engine.exact import layout
 from atmosbox.engine.exact.advance import Book, advancing, dry_loop
 from atmosbox.engine.exact.calendar import new_calendar
@@ -247,13 +247,12 @@ class ParcelSet(Parcel):
             self._calendar, self._box, self._walls, self._tallies,
         )  # fmt: skip
 
-    def _gas(self) -> Gas:
+    def _gas(self) -> Any:
         """Return all data of the kernels, with the present cells."""
-        made: Gas = layout.as_laid_out(self._data(), self._layout, self._modes)
-        return made
+        return layout.as_laid_out(self._data(), self._layout, self._modes)
 
     @property
-    def _clocks(self) -> Array:
+    def _clocks(self) -> Any:
         """The times of events that belong to no molecule: here there are none."""
         return _NO_CLOCKS
 
@@ -356,10 +355,9 @@ class ParcelSet(Parcel):
 
     def _warmth(self) -> tuple[float, float]:
         """Return kT of the molecules and of the warmest wall [energy]; of a fall if no molecule moves."""
-        first = zip(self._walls.law, self._walls.schedule_kT[self._walls.schedule[:-1]], strict=True)
-        baths = [float(kT) for law, kT in first if law == HEAT_BATH]
         if not self.number:
             return 0.0, 0.0
+        baths = first_bath_kT(self._walls)
         kinetic, _, potential = self.energy()
         kT = 2.0 * kinetic / ((2.0 if self._planar else 3.0) * self.number)
         return kT if kT > 0.0 or baths else potential / self.number, max(baths, default=0.0)

@@ -45,9 +45,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
         # where the other molecule is at time t: it has flown freely since its own clock
         other = gas.molecules[j]
         dt = t - other.clock
-        wx = other.vx
-        wy = other.vy
-        wz = other.vz
+        wx, wy, wz = other.vx, other.vy, other.vz
         rx = at.x - other.x - dt * wx
         ry = at.y - other.y - dt * wy
         if modes.gravity:
@@ -57,9 +55,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
             rz = at.z - other.z - dt * wz
         rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
         distance = reach(radius, gas.kinds.table[other.kind].radius if modes.mixed else radius)
-        ux = at.vx - wx
-        uy = at.vy - wy
-        uz = at.vz - wz
+        ux, uy, uz = at.vx - wx, at.vy - wy, at.vz - wz
         if modes.images:
             after = soonest_image(rx, ry, rz, ux, uy, uz, distance, gas.box)
             if after < soonest and i != j:
@@ -128,6 +124,18 @@ def next_move(slots, t, at, size, radius, gas, modes):
             what = CEILING
         time = min(time, time_c)
     return time, what
+
+
+@kernel
+def plan_move(i, slots, t, at, size, radius, gas, modes):
+    """Predict again when molecule i comes to a boundary or a wall; its next contact stays as it was predicted."""
+    event = gas.events[i]
+    time, what = next_move(slots, t, at, size, radius, gas, modes)
+    time += t
+    if event.contact_time < time:
+        what = CONTACT
+    event.what = what
+    schedule(gas.calendar, i, min(time, event.contact_time))
 
 
 @kernel

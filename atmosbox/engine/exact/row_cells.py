@@ -74,29 +74,18 @@ def _nearest(length, width, widest, periodic, above):
 
 
 @kernel(plain=True)
-def cell_numbers(length, filled, width, radius, molecules, periodic, planar):
-    """Return the numbers of cells along the axes that come nearest to a width; zeros if rows cannot hold copies then.
+def cell_numbers(length, filled, radii, molecules, periodic, planar):
+    """Return the numbers of cells along the axes that come nearest to the intended widths; zeros if there are none.
 
-    Parameters
-    ----------
-    length, filled
-        Extent of the cells along x, y and z, and the height up to which there are molecules now [length].
-    width
-        The intended width of a cell along each axis [length].
-    radius
-        Radius of the largest molecule [length].
-    molecules
-        Number of molecules.
-    periodic
-        Whether each axis is periodic.
-    planar
-        Whether all centres lie in one plane y = constant.
+    ``length`` is the extent of the cells along x, y and z, ``filled`` the height up to which there are molecules now
+    [length]; ``radii`` are those of the smallest and of the largest molecule [length].
     """
     x, y, z = length[0], length[1], length[2]
     found = (0, 0, 0)
     if min(x, y, filled) < 1e-6 or max(x, y, z) > 1e6:
         return found  # single precision would need other units
-    widest = radius * MARGIN
+    width = widths_for_rows(x, y, filled, radii[0], molecules, planar)
+    widest = radii[1] * MARGIN
     wanted = x / width[0] * (1.0 if planar else y / width[1]) * (z / width[2])
     best = math.inf
     for k in range(8):

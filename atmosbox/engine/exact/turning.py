@@ -12,10 +12,8 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, ceiling_velocity
-from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
-from atmosbox.engine.exact.prediction import CEILING, limits, next_move
-from atmosbox.engine.exact.search import CONTACT
+from atmosbox.engine.exact.prediction import CEILING, limits, plan_move
 
 LOWEST, HIGHEST = 0.6, 1.5
 """Lowest and highest ceiling, relative to its height when the cells were laid out; beyond, they are laid out again."""
@@ -94,17 +92,11 @@ def replan_under(lowest, now, gas, modes):
     for i in range(gas.molecules.size):
         if modes.phases and math.isinf(gas.molecules[i].clock):
             continue
-        event = gas.events[i]
-        slots = slots_of(i, gas)
         size, radius = size_and_radius(i, gas, modes)
-        if limits(slots[2], 2, size, radius, gas, modes)[1] < lowest - radius and np.int64(event.what) != CEILING:
-            continue
-        time, what = next_move(slots, now, motion_at(i, now, gas, modes), size, radius, gas, modes)
-        time += now
-        if event.contact_time < time:
-            what = CONTACT
-        event.what = what
-        schedule(gas.calendar, i, min(time, event.contact_time))
+        slots = slots_of(i, gas)
+        top = limits(slots[2], 2, size, radius, gas, modes)[1]
+        if top >= lowest - radius or np.int64(gas.events[i].what) == CEILING:
+            plan_move(i, slots, now, motion_at(i, now, gas, modes), size, radius, gas, modes)
 
 
 @kernel
@@ -113,9 +105,7 @@ def turn(t, at, gas, ascent, modes):
     piston = gas.walls.piston
     velocity = ceiling_velocity(at, ascent.lift)
     ceiling = piston[0] + piston[1] * (t - piston[2])
-    piston[0] = ceiling
-    piston[1] = velocity
-    piston[2] = t
+    piston[0], piston[1], piston[2] = ceiling, velocity, t
     ascent.turns[0] += 1
     if ceiling > HIGHEST * ascent.filled or ceiling < LOWEST * ascent.filled:
         return False

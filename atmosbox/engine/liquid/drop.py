@@ -24,37 +24,44 @@ from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
-from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
+from atmosbox.engine.exact.exact import Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
-from atmosbox.engine.liquid.drop_shape import (
-    about,
-    given_by_surface,
-    leaving_rates,
-    placed,
-    radius_of,
-    resize,
-    surface_energy,
-    surface_left,
-    within,
-)
+from atmosbox.engine.liquid.drop_shape import given_by_surface, radius_of, redraw, resize, surface_energy, surface_left
 from atmosbox.engine.liquid.insertion import Place, enter, has_room, move_to, place_at, take_out, withdraw
-from atmosbox.engine.liquid.moist import ceiling_at, renew
-from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, stays, wait
-
-_LEAVES = 1
+from atmosbox.engine.liquid.moist import ceiling_at
+from atmosbox.engine.liquid.reservoir import AIR_MET, LEAVES, THERMAL, condense, evaporate, exchange, leave, stays
 
 
 @kernel
-def _renew(t, gas, drops, reservoir):
-    """Compute the surface, or the rates of the drops, and draw the time at which the next molecule leaves."""
-    if not drops.plain:
-        reservoir.clock[_LEAVES] = t + wait(leaving_rates(drops, reservoir), gas.tallies.random)
-        return
-    surface = 0.0
-    for k in range(drops.record.size):
-        surface += surface_left(drops, k)
-    reservoir.surface[0] = surface
-    renew(t, gas.tallies.random, reservoir)
+def _about(nx, ny, nz, state):
+    """Draw a direction by the cosine law about a normal."""
+    rise = math.sqrt(uniform(state))
+    across = math.sqrt(max(1.0 - rise * rise, 0.0))
+    cosine, sine = circle(uniform(state))
+    # two axes at right angles to the normal: Duff and others 2017, jcgt.org/published/0006/01/01
+    sign = 1.0 if nz >= 0.0 else -1.0
+    a = -1.0 / (sign + nz)
+    b = nx * ny * a
+    c, s = across * cosine, across * sine
+    return (
+        c * (1.0 + sign * nx * nx * a) + s * b + rise * nx,
+        c * sign * b + s * (sign + ny * ny * a) + rise * ny,
+        -c * sign * nx - s * ny + rise * nz,
+    )
+
+
+@kernel
+def _within(u, radius, length, inverse):
+    """Return a coordinate of a drop, moved inwards if the drop has grown into a wall."""
+    return u if inverse != 0.0 else min(max(u, radius), max(length - radius, radius))
+
+
+@kernel
+def _placed(u, radius, length, inverse, lowest):
+    """Return a coordinate of a molecule, brought back into a periodic box, and whether it is between the walls."""
+    if inverse != 0.0:
+        return u - math.floor((u - lowest) / length) * length, True
+    return u, radius <= u <= length - radius
 
 
 @kernel
@@ -91,9 +98,9 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     x, y, z = one.x + share * rx, one.y + share * ry, one.z + share * rz
     cube, held = drops.cube[a] + drops.cube[b], drops.held[a] + drops.held[b]
     radius = radius_of(drops, cube, held)
-    x = within(x, radius, box.length_x, box.inverse_x)
-    y = within(y, radius, box.length_y, box.inverse_y)
-    z = within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
+    x = _within(x, radius, box.length_x, box.inverse_x)
+    y = _within(y, radius, box.length_y, box.inverse_y)
+    z = _within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
     x, y, z, moved = move_to(i, x, y, z, gas, modes)
     if not moved:
         return Status.FULL, i
@@ -147,7 +154,7 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
         reservoir.count[AIR_MET] += 1
         nx, ny, nz = nearest_image(at.x - drop.x, at.y - drop.y, at.z - drop.z, box, modes)
         long = math.sqrt(nx * nx + ny * ny + nz * nz)
-        ex, ey, ez = about(nx / long, ny / long, nz / long, state)
+        ex, ey, ez = _about(nx / long, ny / long, nz / long, state)
         speed = math.sqrt(2.0 * flight / reduced)
         vx, vy, vz = cx + (1.0 - light) * speed * ex, cy + (1.0 - light) * speed * ey, cz + (1.0 - light) * speed * ez
         wx, wy, wz = cx - light * speed * ex, cy - light * speed * ey, cz - light * speed * ez
@@ -186,10 +193,10 @@ def _emit(t, gas, drops, reservoir, modes):
     cosine, sine = circle(uniform(state))
     nx, ny = across * cosine, across * sine
     size, lowest = table[reservoir.kind].size_class, gas.cells.boundary
-    x, inside_x = placed(drop.x + distance * nx, radius, box.length_x, box.inverse_x, lowest[size, 0, 0])
-    y, inside_y = placed(drop.y + distance * ny, radius, box.length_y, box.inverse_y, lowest[size, 1, 0])
+    x, inside_x = _placed(drop.x + distance * nx, radius, box.length_x, box.inverse_x, lowest[size, 0, 0])
+    y, inside_y = _placed(drop.y + distance * ny, radius, box.length_y, box.inverse_y, lowest[size, 1, 0])
     top = ceiling_at(t, gas, modes)[0]
-    z, inside_z = placed(drop.z + distance * nz, radius, top, box.inverse_z, lowest[size, 2, 0])
+    z, inside_z = _placed(drop.z + distance * nz, radius, top, box.inverse_z, lowest[size, 2, 0])
     found = Place.TAKEN
     if inside_x and inside_y and inside_z:
         found = place_at(i, t, x, y, z, gas, modes)
@@ -204,7 +211,7 @@ def _emit(t, gas, drops, reservoir, modes):
     flight, spin = evaporate(reservoir, state)
     leave(reservoir, flight + spin)
     speed = math.sqrt(2.0 * flight / (heavy * light))
-    ex, ey, ez = about(nx, ny, nz, state)
+    ex, ey, ez = _about(nx, ny, nz, state)
     a, b = (1.0 - light) * speed, light * speed
     free = Motion(x, y, z, drop.vx + a * ex, drop.vy + a * ey, drop.vz + a * ez)
     enter(i, t, free, spin, gas, reservoir, modes)
@@ -222,24 +229,20 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
         for k in range(drops.record.size):
             resize(drops, k, gas.kinds, modes)
-        _renew(now, gas, drops, reservoir)
+        redraw(now, gas, drops, reservoir)
 
     @kernel(entry=True)
     def advance(gas, drops, reservoir, until, most):
         """Resolve events of molecules and drops up to ``until``; return a `Status` as a number and how many."""
         gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
         done = 0
-        checked = 0
         while done < most:
             # events of molecules and drops, until a molecule leaves a drop or something meets one
-            due = reservoir.clock[_LEAVES]
+            due = reservoir.clock[LEAVES]
             status, some = proceed(gas, min(until, due), most - done, modes)
             done += some + 1
-            if done - checked >= CHECK_EVERY:
-                _, t = next_event(gas.calendar)
-                if piled_up(min(t, due), done - checked, gas):
-                    return Status.STALLED.value, done
-                checked = done
+            if piled_up(min(next_event(gas.calendar)[1], due), some + 1, gas):
+                return Status.STALLED.value, done
             j = -1
             t = due
             if status == Status.MEETS_LIQUID:
@@ -261,7 +264,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
             if status != Status.DONE:
                 return status.value, done
             # the surface, or the rates, have changed; in one place, so that it is compiled once
-            _renew(t, gas, drops, reservoir)
+            redraw(t, gas, drops, reservoir)
             call(j, t, gas)
         return Status.BUSY.value, done
 

@@ -21,10 +21,9 @@ Koehler, H. (1936), The nucleus in and the growth of hygroscopic droplets, doi:1
 import math
 from collections import namedtuple
 
-from atmosbox.engine.core.elementary import cbrt, circle
+from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.core.random import uniform
-from atmosbox.engine.liquid.reservoir import evaporation_flux
+from atmosbox.engine.liquid.reservoir import LEAVES, evaporation_flux, renew, wait
 
 
 @kernel
@@ -39,22 +38,6 @@ def given_by_surface(drops, k, held):
     """Return the surface energy that drop k loses when it shrinks from ``held`` molecules to one fewer [energy]."""
     cube = drops.cube[k]
     return surface_energy(drops, cube, held) - surface_energy(drops, cube, held - 1)
-
-
-@kernel
-def leaving_rates(drops, reservoir):
-    """Store the rate at which molecules leave each drop [1/time]; return the sum of these rates."""
-    total = 0.0
-    for k in range(drops.record.size):
-        held = drops.held[k]
-        rate = 0.0
-        surface = surface_left(drops, k)
-        if surface > 0.0:
-            activity = held / (held + drops.solute[k])
-            rate = surface * activity * evaporation_flux(reservoir, given_by_surface(drops, k, held))
-        drops.rate[k] = rate
-        total += rate
-    return total
 
 
 class DropRecords(
@@ -102,32 +85,29 @@ def surface_left(drops, k):
 
 
 @kernel
-def about(nx, ny, nz, state):
-    """Draw a direction by the cosine law about a normal."""
-    rise = math.sqrt(uniform(state))
-    across = math.sqrt(max(1.0 - rise * rise, 0.0))
-    cosine, sine = circle(uniform(state))
-    # two axes at right angles to the normal: Duff and others 2017, jcgt.org/published/0006/01/01
-    sign = 1.0 if nz >= 0.0 else -1.0
-    a = -1.0 / (sign + nz)
-    b = nx * ny * a
-    c, s = across * cosine, across * sine
-    return (
-        c * (1.0 + sign * nx * nx * a) + s * b + rise * nx,
-        c * sign * b + s * (sign + ny * ny * a) + rise * ny,
-        -c * sign * nx - s * ny + rise * nz,
-    )
+def leaving_rates(drops, reservoir):
+    """Store the rate at which molecules leave each drop [1/time]; return the sum of these rates."""
+    total = 0.0
+    for k in range(drops.record.size):
+        held = drops.held[k]
+        rate = 0.0
+        surface = surface_left(drops, k)
+        if surface > 0.0:
+            activity = held / (held + drops.solute[k])
+            rate = surface * activity * evaporation_flux(reservoir, given_by_surface(drops, k, held))
+        drops.rate[k] = rate
+        total += rate
+    return total
 
 
 @kernel
-def within(u, radius, length, inverse):
-    """Return a coordinate of a drop, moved inwards if the drop has grown into a wall."""
-    return u if inverse != 0.0 else min(max(u, radius), max(length - radius, radius))
-
-
-@kernel
-def placed(u, radius, length, inverse, lowest):
-    """Return a coordinate of a molecule, brought back into a periodic box, and whether it is between the walls."""
-    if inverse != 0.0:
-        return u - math.floor((u - lowest) / length) * length, True
-    return u, radius <= u <= length - radius
+def redraw(t, gas, drops, reservoir):
+    """Compute the surface, or the rates of the drops, and draw the time at which the next molecule leaves."""
+    if not drops.plain:
+        reservoir.clock[LEAVES] = t + wait(leaving_rates(drops, reservoir), gas.tallies.random)
+        return
+    surface = 0.0
+    for k in range(drops.record.size):
+        surface += surface_left(drops, k)
+    reservoir.surface[0] = surface
+    renew(t, gas.tallies.random, reservoir)

@@ -29,18 +29,6 @@ class Place(IntEnum):
 
 
 @kernel
-def _is_near(j, t, x, y, z, distance, gas, modes):
-    """Return whether the centre of molecule j is nearer to a place than ``distance`` [length]; without gravity."""
-    other = gas.molecules[j]
-    dt = t - other.clock
-    rx = x - other.x - dt * other.vx
-    ry = y - other.y - dt * other.vy
-    rz = z - other.z - dt * other.vz
-    rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
-    return rx * rx + ry * ry + rz * rz < distance * distance
-
-
-@kernel
 def _is_free(ignored, t, at, radius, size, slots, gas, modes):
     """Return whether a sphere of this radius at x, y, z, in the cells of three slots, overlaps none but two ignored."""
     cells = gas.cells
@@ -56,8 +44,12 @@ def _is_free(ignored, t, at, radius, size, slots, gas, modes):
                     j = listed(start, place, cells, modes)
                     if j < 0 or j in ignored:
                         continue
-                    _, other_radius = size_and_radius(j, gas, modes)
-                    if _is_near(j, t, x, y, z, reach(radius, other_radius), gas, modes):
+                    other = gas.molecules[j]
+                    dt = t - other.clock
+                    distance = reach(radius, size_and_radius(j, gas, modes)[1])
+                    rx, ry, rz = x - other.x - dt * other.vx, y - other.y - dt * other.vy, z - other.z - dt * other.vz
+                    rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
+                    if rx * rx + ry * ry + rz * rz < distance * distance:
                         return False
     return True
 
@@ -138,9 +130,7 @@ def take_out(i, gas, modes):
         change(Change.REMOVE, i, size, slots_of(i, gas), gas.cells, modes)
     molecule = gas.molecules[i]
     molecule.clock = math.inf
-    molecule.vx = 0.0
-    molecule.vy = 0.0
-    molecule.vz = 0.0
+    molecule.vx, molecule.vy, molecule.vz = 0.0, 0.0, 0.0
     molecule.count += 1
     if modes.rotation:
         gas.kinds.rotational_energy[i] = 0.0

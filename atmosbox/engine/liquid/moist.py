@@ -9,7 +9,6 @@ largest speed of all, and a meeting is accepted with a probability proportional 
 
 import functools
 import math
-from collections import namedtuple
 from collections.abc import Callable
 from typing import Any
 
@@ -20,34 +19,26 @@ from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
-from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
+from atmosbox.engine.exact.exact import Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.turning import Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, enter, find_place, withdraw
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
-    LIQUID,
+    LEAVES,
+    MAY_MEET,
     RAINED_ENERGY,
+    RAINS,
     THERMAL,
     condense,
     direction,
     emitted,
-    evaporation_rate,
     exchange,
     rain_out,
+    renew,
     stays,
     wait,
 )
-
-_MAY_MEET, _LEAVES, _RAINS = range(3)
-
-
-class MoistAscent(namedtuple("MoistAscent", "dry vapours rotations")):
-    """The data that the kernels need for moist air under a piston that follows a pressure.
-
-    ``dry``: the data for any air; ``vapours``: the number of molecules of vapour and liquid; ``rotations``: the
-    rotational degrees of freedom of all molecules together.
-    """
 
 
 @kernel
@@ -78,13 +69,6 @@ def _volume(t, diameter, gas, reservoir, modes):
 
 
 @kernel
-def renew(t, state, reservoir):
-    """Draw the times at which the next molecule leaves the liquid, and at which the next one rains."""
-    reservoir.clock[_LEAVES] = t + wait(evaporation_rate(reservoir), state)
-    reservoir.clock[_RAINS] = t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
-
-
-@kernel
 def _next_meeting(t, gas, reservoir, modes):
     """Draw the time at which the next molecule may meet the mist."""
     if modes.pool:
@@ -92,7 +76,7 @@ def _next_meeting(t, gas, reservoir, modes):
     volume = _volume(t, reservoir.diameter, gas, reservoir, modes)
     reservoir.bound[1] = volume
     rate = gas.molecules.size * reservoir.area * reservoir.bound[0] / (4.0 * volume)
-    reservoir.clock[_MAY_MEET] = t + wait(rate, gas.tallies.random)
+    reservoir.clock[MAY_MEET] = t + wait(rate, gas.tallies.random)
 
 
 @kernel
@@ -185,18 +169,14 @@ def _emit(t, gas, reservoir, modes):
 def _proceed(gas, reservoir, until, most, modes):
     """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and their number."""
     done = 0
-    checked = 0
     clock = reservoir.clock
     while done < most:
         # events of molecules, up to the next event of the liquid
-        due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
+        due = min(clock[MAY_MEET], clock[LEAVES], clock[RAINS])
         status, some = proceed(gas, min(until, due), most - done, modes)
         done += some + 1
-        if done - checked >= CHECK_EVERY:
-            _, t = next_event(gas.calendar)
-            if piled_up(min(t, due), done - checked, gas):
-                return Status.STALLED, done
-            checked = done
+        if piled_up(min(next_event(gas.calendar)[1], due), some + 1, gas):
+            return Status.STALLED, done
         if modes.pool and status == Status.MEETS_LIQUID:
             i, t = next_event(gas.calendar)
             _touch(i, t, motion_at(i, t, gas, modes), 0.0, gas, reservoir, modes)
@@ -205,10 +185,10 @@ def _proceed(gas, reservoir, until, most, modes):
             continue
         if status != Status.DONE or due > until:
             return status, done
-        if clock[_MAY_MEET] == due:
+        if clock[MAY_MEET] == due:
             _may_meet(due, gas, reservoir, modes)
             _next_meeting(due, gas, reservoir, modes)
-        elif clock[_LEAVES] == due:
+        elif clock[LEAVES] == due:
             status = _emit(due, gas, reservoir, modes)
             if status != Status.DONE:
                 return status, done
@@ -219,14 +199,15 @@ def _proceed(gas, reservoir, until, most, modes):
 
 
 @kernel
-def _gauges(t, gas, reservoir, ascent):
+def _gauges(t, gas, moisture, ascent):
     """Return the `Gauges` of moist air at time t."""
+    reservoir = moisture.reservoir
     missing = reservoir.top[0]
     number = gas.molecules.size - missing
-    vapour = ascent.vapours - missing
+    vapour = moisture.vapours - missing
     condensed = reservoir.binding_energy * vapour + (reservoir.energy[THERMAL] + reservoir.energy[RAINED_ENERGY])
-    freedom = 3.0 + (ascent.rotations - reservoir.rotation * missing) / max(number, 1)
-    return gauges(t, number, freedom, condensed, gas, ascent.dry)
+    freedom = 3.0 + (moisture.rotations - reservoir.rotation * missing) / max(number, 1)
+    return gauges(t, number, freedom, condensed, gas, ascent)
 
 
 @kernel
@@ -259,19 +240,20 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         return status.value, done
 
     @kernel(entry=True)
-    def ascend(gas, reservoir, ascent, until, most):
+    def ascend(gas, moisture, ascent, until, most):
         """Do what ``advance`` does, and set the velocity of the piston whenever that is due."""
-        gas, reservoir, ascent = by_reference(gas), by_reference(reservoir), by_reference(ascent)
+        gas, moisture, ascent = by_reference(gas), by_reference(moisture), by_reference(ascent)
+        reservoir = moisture.reservoir
         done = 0
         while True:
-            stop, then = ahead(until, gas, ascent.dry)
+            stop, then = ahead(until, gas, ascent)
             status, some = _proceed(gas, reservoir, stop, most - done, modes)
             done += some
             if status != Status.DONE or then == Next.END:
                 return status.value, done
             if then == Next.CRUSHED:
                 return Status.CRUSHED.value, done
-            if not turn(stop, _gauges(stop, gas, reservoir, ascent), gas, ascent.dry, modes):
+            if not turn(stop, _gauges(stop, gas, moisture, ascent), gas, ascent, modes):
                 return Status.TURNED.value, done
             _wake(stop, gas, reservoir, modes)
 

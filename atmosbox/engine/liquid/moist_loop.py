@@ -11,7 +11,6 @@ from typing import Any
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.liquid import drop, moist
-from atmosbox.engine.liquid.moist import MoistAscent
 
 
 class Moisture(namedtuple("Moisture", "reservoir vapours rotations drops")):
@@ -26,42 +25,25 @@ class Moisture(namedtuple("Moisture", "reservoir vapours rotations drops")):
 @functools.cache
 def moist_loop(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``advance``, ``draw`` and ``wake`` of one set of modes."""
-    if modes.drops > 0:
-        drop_begin, drop_advance = drop.specialise(modes)
+    begin, loop = (drop if modes.drops else moist).specialise(modes)
 
-        @kernel(plain=True)
-        def advance(gas, ascent, book, until, most):
-            """Resolve events of molecules and of drops."""
-            return drop_advance(gas, book.moisture.drops, book.moisture.reservoir, until, most)
-
-        @kernel(plain=True)
-        def draw(gas, book, speed):
-            """Draw the time at which the next molecule leaves a drop again."""
-            drop_begin(gas, book.moisture.drops, book.moisture.reservoir, book.now[0])
-
-    else:
-        moist_begin, moist_advance = moist.specialise(modes)
-
+    @kernel(plain=True)
+    def advance(gas, ascent, book, until, most):
+        """Resolve events of molecules, liquid and drops, and set a new velocity of the piston when it is due."""
+        wet = book.moisture
+        if modes.drops:
+            return loop(gas, wet.drops, wet.reservoir, until, most)
         if modes.ascends:
+            return loop(gas, wet, ascent, until, most)
+        return loop(gas, wet.reservoir, until, most)
 
-            @kernel(plain=True)
-            def advance(gas, ascent, book, until, most):
-                """Resolve events of molecules and of the liquid, and set a new piston velocity when it is due."""
-                wet = book.moisture
-                here = MoistAscent(ascent, wet.vapours, wet.rotations)
-                return moist_advance(gas, wet.reservoir, here, until, most)
-
+    @kernel(plain=True)
+    def draw(gas, book, speed):
+        """Draw the next event of the liquid again, for molecules with speeds up to `speed` [length/time]."""
+        if modes.drops:
+            begin(gas, book.moisture.drops, book.moisture.reservoir, book.now[0])
         else:
-
-            @kernel(plain=True)
-            def advance(gas, ascent, book, until, most):
-                """Resolve events of molecules and of the liquid."""
-                return moist_advance(gas, book.moisture.reservoir, until, most)
-
-        @kernel(plain=True)
-        def draw(gas, book, speed):
-            """Draw the next event of the liquid again, for molecules with speeds up to `speed` [length/time]."""
-            moist_begin(gas, book.moisture.reservoir, book.now[0], speed)
+            begin(gas, book.moisture.reservoir, book.now[0], speed)
 
     @kernel(plain=True)
     def wake(gas, book, speed):

@@ -63,14 +63,10 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _piston_turned(self) -> None:
         super()._piston_turned()
-        self._wake(2.0 * abs(self.piston_velocity))
+        self._wakes(self._gas(), self._book(), 2.0 * abs(self.piston_velocity))
 
     def _bath_changes(self, kT: float) -> None:
-        self._wake(math.sqrt(8.0 * kT / self._liquid.substance.mass))
-
-    def _wake(self, speed: float) -> None:
-        """Draw the times of the liquid again if molecules may now become faster than was assumed for them."""
-        self._wakes(self._gas(), self._book(), speed)
+        self._wakes(self._gas(), self._book(), math.sqrt(8.0 * kT / self._liquid.substance.mass))
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write the molecules of the gas into the arrays, then those of the liquid, which are not in the box."""
@@ -103,10 +99,9 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         _, self._draws, self._wakes = moist_loop(self._modes)
 
     @property
-    def _clocks(self) -> Array:
+    def _clocks(self) -> Any:
         """The times of the next events of the liquid."""
-        clock: Array = self._reservoir.clock
-        return clock
+        return self._reservoir.clock
 
     @property
     def _moisture(self) -> Any:

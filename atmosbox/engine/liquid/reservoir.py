@@ -45,6 +45,9 @@ STICKING, LOG_RATE = range(2)
 THERMAL, RAINED_ENERGY = range(2)
 """The energies of a reservoir [energy]: the thermal energy of the liquid now, and the energy that the rain took out."""
 
+MAY_MEET, LEAVES, RAINS = range(3)
+"""The clocks: when the next molecule may meet the liquid, the next one leaves it, and the next one rains [time]."""
+
 _BINS = 60
 _WIDEST = 12.0
 _NEVER = -600.0
@@ -167,6 +170,13 @@ def evaporation_rate(reservoir):
 def wait(rate, state):
     """Draw the waiting time [time] until the next event of a Poisson process of this rate [1/time]."""
     return -log_of_normal(uniform(state)) / rate if rate > 0.0 else math.inf
+
+
+@kernel
+def renew(t, state, reservoir):
+    """Draw at time t when the next molecule leaves the liquid, and when the next one rains."""
+    reservoir.clock[LEAVES] = t + wait(evaporation_rate(reservoir), state)
+    reservoir.clock[RAINS] = t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
 
 
 @kernel

@@ -77,7 +77,7 @@ def lattice_positions(
         step = np.array([room[a] / (g if periodic[a] else max(g - 1, 1)) for a, g in enumerate(grid)])
         many = [a for a in axes if grid[a] > 1]
         gaps = [2.0 * step[a] for a in many if grid[a] > 2]
-        gaps += [_diagonal(step[a], step[b]) for a, b in itertools.combinations(many, 2)]
+        gaps += [math.sqrt(step[a] * step[a] + step[b] * step[b]) for a, b in itertools.combinations(many, 2)]
         gap = min(gaps, default=math.inf)
         if best is None or gap > best[0]:
             best = (gap, grid, step)
@@ -94,8 +94,3 @@ def lattice_positions(
         sites[:, 1] = 0.5 * sides[1]
     chosen = np.arange(n) if rng is None else np.sort(np.argsort(rng.random(len(sites)), kind="stable")[:n])
     return np.asarray(sites[chosen], np.float64)
-
-
-def _diagonal(a: float, b: float) -> float:
-    """Return the hypotenuse over two sides; `math.hypot` is not rounded equally on all machines."""
-    return math.sqrt(a * a + b * b)

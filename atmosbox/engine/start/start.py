@@ -69,16 +69,8 @@ class Scattered:
 
     def draw(self, gas: _Gas, rng: Source) -> Array:
         """Return random positions."""
-        place = random_positions(
-            gas.length,
-            gas.diameter,
-            rng,
-            periodic=gas.periodic,
-            planar=gas.planar,
-            top=self.top,
-            scale_height=self.scale_height,
-            apart=gas.apart,
-        )
+        box = {"periodic": gas.periodic, "planar": gas.planar, "apart": gas.apart}
+        place = random_positions(gas.length, gas.diameter, rng, top=self.top, scale_height=self.scale_height, **box)
         if gas.apart and np.size(self.reach):
             assert isinstance(rng, RandomNumbers)
             place = clear_of_drops(place, self.centre, self.reach, float(gas.length[0]), rng)

@@ -1,7 +1,6 @@
 """Velocities and rotational energies of the molecules at the start; positions are in `scatter` and `lattice`."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,17 +75,6 @@ def equal_speeds(speed: float, number: int, rng: Source, *, planar: bool = False
     if planar:
         v[:, 1] = 0.0
     return np.asarray(speed * v / np.sqrt(np.sum(v * v, axis=1))[:, None])
-
-
-def two_halves(position: Array, length: Sequence[float], kT: tuple[float, float]) -> Array:
-    """Return the temperature [energy] of each molecule: ``kT[0]`` in the lower half of the box along x, else ``kT[1]``.
-
-    Examples
-    --------
-    >>> two_halves(np.array([[1.0, 0, 0], [3.0, 0, 0]]), (4, 4, 4), (1.0, 2.0))
-    array([1., 2.])
-    """
-    return np.where(position[:, 0] < 0.5 * length[0], kT[0], kT[1])
 
 
 def rotational_energies(kT: ArrayLike, rotation: ArrayLike, rng: Source) -> Array:

@@ -154,7 +154,9 @@ class SteppedParcel(MarchingParcel):
 
     def _choose_step(self, velocity: Array) -> None:
         """Choose the length of a step; refuse one in which molecules cross the box, and warn of a coarse one."""
-        thermal = self._thermal_speeds(velocity)
+        degrees = (2.0 if self._planar else 3.0) * max(self._number, 1)
+        kT = self._warmest(float(np.sum(self._mass[:, None] * velocity**2)) / degrees)
+        thermal = np.sqrt(kT / self._mass)
         self._smallest = float(self._diameter[self._diameter > 0.0].min(initial=math.inf))
         self._speed = float(thermal.max(initial=0.0)) or math.sqrt(self._gravity * float(self._sides[2]))
         if self._asked_step is None and self._number and math.isinf(self._smallest):

@@ -1,10 +1,11 @@
 """The parcel of molecules that attract each other, advanced exactly: a gas that can condense to a liquid."""
 
-from typing import ClassVar, Unpack
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.inputs import column
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.parcel import Arrangement, Array
 from atmosbox.engine.core.refusal import RefusedError, number
@@ -96,15 +97,9 @@ class AttractingParcelSet(ParcelSet):
         super()._begin(position, velocity, rotational_energy)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
-        n = len(position)
-        species = self._species
-        if species.ndim > 1 or (species.ndim == 1 and len(species) != n):
-            raise RefusedError(
-                f"species has shape {species.shape}: give one whole number, or one for each of {n} molecules"
-            )
-        if not np.issubdtype(species.dtype, np.integer) or (species < 0).any():
+        species = column(self._species, len(position), "species").astype(np.int64)
+        if (species != self._species).any():
             raise RefusedError("species of a molecule is not a whole number: give 0, 1, 2, ...")
-        species = np.broadcast_to(species, (n,)).astype(np.int64)
         self._kinds, kind, self._size_radius = classify(self._mass, self._diameter, self._rotation, None, species)
         self._write(position, velocity, kind)
         radius = np.array(self._kinds.table["radius"])
@@ -124,12 +119,12 @@ class AttractingParcelSet(ParcelSet):
         """Make the lists of all molecules, and predict all events again."""
         n = len(self._fields)
         reach = float(self._wells.distance.max(initial=0.0))
+        shortest = 2.0 * _TIGHT * reach
         for axis in range(3):
-            if self._periodic[axis] and self._sides[axis] < 2.0 * _TIGHT * reach:
+            if self._periodic[axis] and self._sides[axis] < shortest:
                 raise RefusedError(
                     f"length = {self._sides[axis]:.6g} along {'xyz'[axis]} is too short for molecules that attract "
-                    f"each other up to a distance of {reach:.6g} on a periodic axis: make it "
-                    f"{2.0 * _TIGHT * reach:.6g} or more"
+                    f"each other up to a distance of {reach:.6g} on a periodic axis: make it {shortest:.6g} or more"
                 )
         mixed, periodic = len(self._kinds.table) > 1, any(self._periodic)
         self._modes = Modes(contacts=True, gravity=self.gravity > 0.0, mixed=mixed, periodic=periodic)
@@ -142,22 +137,15 @@ class AttractingParcelSet(ParcelSet):
         self._settle()
 
     def _find_kernels(self) -> None:
-        _, _, self._replan, self._overlap_at = specialise(self._modes)
+        _, _, self._replan, self._overlap = specialise(self._modes)
         self._pass_time, self._settled = advancing(self._modes)
 
-    def _overlap(self, gas: WellGas) -> tuple[float, int, int]:
-        depth, i, j = self._overlap_at(gas, self._now)
-        return float(depth), int(i), int(j)
-
-    def _data(self) -> WellGas:  # type: ignore[override]
-        made: WellGas = as_listed(
-            WellGas(
-                self._molecules, self._events, self._kinds, self._calendar, self._box,
-                self._walls, self._tallies, self._wells, self._vicinity, self._bath,
-            ),
-            self._layout,
+    def _data(self) -> Any:
+        gas = WellGas(
+            self._molecules, self._events, self._kinds, self._calendar, self._box,
+            self._walls, self._tallies, self._wells, self._vicinity, self._bath,
         )  # fmt: skip
-        return made
+        return as_listed(gas, self._layout)
 
     def _make_room(self) -> None:
         """Make memory for longer lists."""
@@ -166,13 +154,12 @@ class AttractingParcelSet(ParcelSet):
         entry[: old.size] = old
         self._vicinity = self._vicinity._replace(entry=entry)
 
-    _gas = _data  # type: ignore[assignment]
+    _gas = _data
 
     @property
-    def _clocks(self) -> Array:
+    def _clocks(self) -> Any:
         """The time of the next draw of the bath."""
-        clock: Array = self._bath.clock
-        return clock
+        return self._bath.clock
 
     def arrays(self) -> Arrays:
         """Return what the kernels of this box work on: see `ParcelSet.arrays`."""

@@ -198,9 +198,7 @@ def enter(i, x, y, z, vicinity):
     vicinity.first[cell] = i
     if after >= 0:
         vicinity.previous[after] = i
-    vicinity.anchor[i, 0] = x
-    vicinity.anchor[i, 1] = y
-    vicinity.anchor[i, 2] = z
+    vicinity.anchor[i, 0], vicinity.anchor[i, 1], vicinity.anchor[i, 2] = x, y, z
 
 
 @kernel

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from atmosbox.engine.core.elementary import log_of_normal
-from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
+from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.motion import time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.random import gaussian_pair, uniform
@@ -22,18 +22,10 @@ from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.exact.calendar import next_event, schedule
 from atmosbox.engine.exact.encounter import hit, kind_of, motion_at, write
-from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up
+from atmosbox.engine.exact.exact import CHECK_EVERY, Status, fetch_ahead, piled_up
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.search import CONTACT
-from atmosbox.engine.wells.vicinity import (
-    bring_back,
-    enter,
-    is_inside,
-    renew,
-    set_inside,
-    time_to_leave_shell,
-    well_of,
-)  # fmt: skip
+from atmosbox.engine.wells.vicinity import bring_back, enter, is_inside, renew, set_inside, time_to_leave_shell, well_of
 
 SHELL = CONTACT + 4
 """Which event comes first: 0 to 5 a wall, 6 to 8 `CORE`, `CAPTURE` or `RELEASE` of a pair, 10 the end of the shell."""
@@ -159,16 +151,6 @@ def time_until_bath(number, gas):
 
 
 @kernel
-def _fetch_ahead(gas):
-    """Fetch into the cache the data of the molecules whose events may come next: see `exact`."""
-    for node in range(2, 8):
-        i = np.int64(gas.calendar.winner[node])
-        prefetch(gas.molecules, i)
-        prefetch(gas.events, i)
-        prefetch(gas.vicinity.entry, i * gas.vicinity.stride)
-
-
-@kernel
 def proceed(gas, until, most, modes):
     """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and their number."""
     tallies = gas.tallies
@@ -191,7 +173,7 @@ def proceed(gas, until, most, modes):
             i, at = _draw_anew(t, gas, modes)
             other = at
         else:
-            _fetch_ahead(gas)
+            fetch_ahead(gas, gas.vicinity.entry, 0, gas.vicinity.stride)
             event = gas.events[i]
             what = np.int64(event.what)
             at = motion_at(i, t, gas, modes)
@@ -275,17 +257,16 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
             call(i, now, gas)
 
     @kernel(entry=True)
-    def overlap(gas, now):
-        """Return the deepest overlap of two cores at time ``now``, in diameters, and the two molecules."""
+    def overlap(gas):
+        """Return the deepest overlap of two cores at the start, in diameters, and the two molecules."""
         vicinity = gas.vicinity
         deepest = -1.0
         first = second = -1
         for i in range(gas.molecules.size):
-            at = motion_at(i, now, gas, modes)
-            start = i * vicinity.stride
+            at, start = gas.molecules[i], i * vicinity.stride
             for q in range(start + 1, start + 1 + np.int64(vicinity.entry[start])):
                 j = np.int64(vicinity.entry[q]) >> 1
-                other = motion_at(j, now, gas, modes)
+                other = gas.molecules[j]
                 rx, ry, rz = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, gas.box, modes)
                 core = well_of(i, j, gas, modes).core
                 depth = 1.0 - math.sqrt((rx * rx + ry * ry + rz * rz) / core) if core > 0.0 else -1.0
