@@ -181,9 +181,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         return ()
     vapour = late.water_vapor_partial_pressure
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
-    share = start.share
+    share = start.share_at(start.temperature)
     # if only few molecules came and went, blocks tell little of the error: use a Poisson number with this memory
-    few = start.flux * faces * start.face * lasted < FEW
+    few = start.flux_at(start.temperature) * faces * start.face * lasted < FEW
     alone = math.sqrt(2.0 * memory / lasted * share / start.full) if few else 0.0
     humid, wet = late.relative_humidity_theory, late.water_vapor_partial_pressure_theory
     both = late.condensation_rate_theory

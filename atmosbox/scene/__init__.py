@@ -26,28 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from atmosbox.scene.engines import EngineChoice
     from atmosbox.scene.headline import Headline
-    from atmosbox.scene.instruments import (
-        LAWS,
-        Air,
-        Clusters,
-        Discs,
-        DropSizes,
-        Environment,
-        Flow,
-        Instrument,
-        Layers,
-        Leaving,
-        Lift,
-        Mixing,
-        MoistLift,
-        Molecules,
-        Nuclei,
-        Readings,
-        Slab,
-        Speeds,
-        Water,
-        wall_laws,
-    )
+    from atmosbox.scene.instruments import *
     from atmosbox.scene.panels import Line, Panel
     from atmosbox.scene.settings import SceneSettings, setting
     from atmosbox.scene.setup import Series, Setup

@@ -89,15 +89,9 @@ _SKEWT_AXES: dict[str, Any] = {
     "x_unit": "degC", "y_unit": "hPa", "x_scale": "linear", "y_scale": "log", "x_invert": False, "y_invert": True
 }  # fmt: skip
 ATMOSPHERE_VARIABLES = (
-    "parcel_temperature",
-    "environment_pressure",
-    "cloud_liquid_water_mixing_ratio",
-    "largest_haze_mixing_ratio",
-    "rain_mixing_ratio",
-    "relative_humidity",
-    "cloud_base",
-    "vapor_molecule_count",
-)
+    "parcel_temperature", "environment_pressure", "cloud_liquid_water_mixing_ratio", "largest_haze_mixing_ratio",
+    "rain_mixing_ratio", "relative_humidity", "cloud_base", "vapor_molecule_count",
+)  # fmt: skip
 """Variables of the parcel that the picture of an atmosphere shows in addition to its height, if the run has them."""
 _TEXTS = ("x_label", "y_label", "x_unit", "y_unit", "note")
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")

@@ -44,8 +44,7 @@ def vapour_pressure(parcel: Any, kT: float) -> float:
     if not parcel.ideal:
         filled = float(law.packing_fraction(parcel.number / parcel.volume, float(parcel.diameter[0])))
         factor = float(law.compressibility_factor(filled))
-    pressure: float = parcel.vapour / parcel.number * density * kT * factor
-    return pressure
+    return float(parcel.vapour / parcel.number * density * kT * factor)
 
 
 class Water:
