@@ -94,7 +94,7 @@ class Flow:
 
     def layers(self) -> Array:
         """Return the number, energy of disordered motion and degrees of freedom in the last sample, layer by layer."""
-        return self._cells[[0, 3, 4]].reshape(3, *self.shape).sum(axis=2)
+        return np.asarray(self._cells[[0, 3, 4]].reshape(3, *self.shape).sum(axis=2))
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the fields of a frame, and tag the molecules near the floor when it is time."""

@@ -47,6 +47,7 @@ class Instrument(Protocol):
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Take one sample of what is averaged over a frame; an instrument without averages inherits this."""
+        return
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read what is measured at the end of a frame, and finish the means of the frame."""
