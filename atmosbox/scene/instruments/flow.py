@@ -169,11 +169,9 @@ class Flow:
 
 @functools.cache
 def modes_of_flow(rows: int, columns: int, *, periodic: bool) -> tuple[Array, Array]:
-    """Return the modes of the upward wind, by height and across the box: cosines, and sines if it is periodic.
+    """Return the modes of the upward wind, by height : (row,), and across the box : (1 or 2, mode, column).
 
-    Returns
-    -------
-    (row,), (1 or 2, mode, column)
+    Across it they are cosines, and sines if it is periodic.
 
     Examples
     --------

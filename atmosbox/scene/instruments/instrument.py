@@ -17,14 +17,9 @@ class Readings(dict[str, Any]):
 
 
 def series(rows: Sequence[Mapping[str, Any]], units: Mapping[str, float]) -> Readings:
-    """Return what was read at the end of each frame as series, each in its SI unit; nothing without a frame.
+    """Return the values of each frame as series in SI units; nothing without a frame.
 
-    Parameters
-    ----------
-    rows
-        The values of each frame by name, in the engine's units.
-    units
-        What these units are in SI, by name of the variable; 1 for a variable that is not named.
+    ``units`` are the engine's units in SI, by the name of the variable; 1 for one that is not named.
     """
     names = rows[0] if rows else ()
     return Readings({name: np.array([row[name] for row in rows]) * units.get(name, 1) for name in names})

@@ -92,30 +92,12 @@ class Mixing(Instrument):
 
 @functools.cache
 def expected_share(bins: int, passed: float) -> tuple[Array, Array]:
-    """Return the share of the left gas after some mixing times, and its variance over that of independent draws.
-
-    Parameters
-    ----------
-    bins
-        Number of equal parts of the box.
-    passed
-        Time since the start [mixing times].
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Share and ratio of variances [1], both (bin,).
-    """
+    """Return the share of the left gas after some mixing times, and its variance over that of independent draws."""
     return law.mixed_share(np.linspace(0.0, 1.0, bins + 1), passed), law.mixed_share_scatter(bins, passed)
 
 
 def entropy_of_counts(left: Counts, right: Counts) -> float:
     """Return the entropy of mixing per molecule, in units of k, of two gases counted in bins; see `Mixing`.
-
-    Parameters
-    ----------
-    left, right : (bin,)
-        Number of molecules of each gas in each bin.
 
     Examples
     --------

@@ -23,20 +23,9 @@ _INSIDE, _OUTSIDE = 3.0, 4.0
 
 
 def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Tell which layers are well inside the liquid, and which are well outside.
+    """Tell which layers are well inside the liquid, and which well outside; none if they cannot be told apart.
 
-    Parameters
-    ----------
-    height, density : (layer,)
-        Middle and density of layers of equal thickness [diameter, diameter^-3]; the liquid is in the middle of a
-        periodic box, else on the floor.
-    periodic
-        Whether the box is periodic.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Both (layer,); all False if liquid and vapour cannot be told apart.
+    The liquid is in the middle of a periodic box, else on the floor; lengths are in diameters.
 
     Examples
     --------

@@ -28,15 +28,7 @@ def gas_kT(parcel: Parcel) -> float:
 
 
 def vapour_pressure(parcel: Any, kT: float) -> float:
-    """Return the partial pressure of the vapour, its share of n k T Z [energy/length^3].
-
-    Parameters
-    ----------
-    parcel
-        A box with vapour in it.
-    kT
-        Temperature of the gas [energy].
-    """
+    """Return the partial pressure of the vapour at a temperature of the gas, its share of n k T Z [energy/length^3]."""
     density = parcel.open_density
     if not density > 0.0:
         return 0.0
