@@ -6,10 +6,10 @@ An engine is chosen by its name, and its options by their values after a colon, 
 
 from __future__ import annotations
 
-import importlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +39,7 @@ class Engine:
     summary
         What it does, in one line.
     parcel
-        The module in `atmosbox.engine` and the class of its parcels, imported when the first box is made.
+        The class of its parcels, whose file is imported when the first box is made.
     parameters
         Its options.
     ideal
@@ -82,17 +82,17 @@ _ALL = (
     Engine(
         "exact",
         "every contact and every wall hit at its exact time, in order",
-        "exact.parcelset.ParcelSet",
+        "ParcelSet",
         (_COLLISIONS,),
         reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
-        moist="liquid.moist_parcelset.MoistParcelSet",
-        drops="liquid.drop_parcelset.DropParcelSet",
-        attracting="wells.attracting_parcelset.AttractingParcelSet",
+        moist="MoistParcelSet",
+        drops="DropParcelSet",
+        attracting="AttractingParcelSet",
     ),
     Engine(
         "stepped",
         "equal steps, as in applets: all molecules move, then those that overlap and approach collide",
-        "stepped.stepped_parcel.SteppedParcel",
+        "SteppedParcel",
         (
             _option("delta", 0.05, _DELTA, 1e-6, 1e3),
             _word("rule", _RULES, "which pairs collide, and how they are found"),
@@ -109,7 +109,7 @@ _ALL = (
     Engine(
         "dsmc",
         "equal steps: in each cell partners of collisions are drawn at random; for many in a thin gas",
-        "dsmc.dsmc_parcel.DsmcParcel",
+        "DsmcParcel",
         (
             _option("dt", 0.2, "time step in mean free times", 1e-4, 10.0),
             _option("occupancy", 10.0, "mean number of molecules in a cell", 1.0, 1e4),
@@ -119,9 +119,19 @@ _ALL = (
         ),
         ideal=True,
         reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
-        moist="dsmc.moist_dsmc_parcel.MoistDsmcParcel",
+        moist="MoistDsmcParcel",
     ),
 )
+_FILES: Mapping[str, Callable[[], Any]] = {
+    "ParcelSet": lambda: import_module("atmosbox.engine.exact.parcelset"),
+    "MoistParcelSet": lambda: import_module("atmosbox.engine.liquid.moist_parcelset"),
+    "DropParcelSet": lambda: import_module("atmosbox.engine.liquid.drop_parcelset"),
+    "AttractingParcelSet": lambda: import_module("atmosbox.engine.wells.attracting_parcelset"),
+    "SteppedParcel": lambda: import_module("atmosbox.engine.stepped.stepped_parcel"),
+    "DsmcParcel": lambda: import_module("atmosbox.engine.dsmc.dsmc_parcel"),
+    "MoistDsmcParcel": lambda: import_module("atmosbox.engine.dsmc.moist_dsmc_parcel"),
+}
+"""The files of the classes of parcels."""
 ENGINES: Mapping[str, Engine] = MappingProxyType({engine.name: engine for engine in _ALL})
 """The engines by name; the first is exact up to rounding."""
 
@@ -209,9 +219,7 @@ class EngineChoice:
             from atmosbox.scene.described_parcel import DescribedParcel
 
             return DescribedParcel(position, velocity, **box)
-        module, _, name = kind.rpartition(".")
-        made = getattr(importlib.import_module(f"atmosbox.engine.{module}"), name)
-        parcel: Parcel = made(position, velocity, **self.options, **box)
+        parcel: Parcel = getattr(_FILES[kind](), kind)(position, velocity, **self.options, **box)
         return parcel
 
     def begin(self, start: Start, *, rng: Source | None = None, **box: Any) -> Parcel:

@@ -187,9 +187,8 @@ class Panel:
             check_choice("panel", name, getattr(self, name), SCALES)
         panel, values = f"of the panel {self.title!r}", vars(self)
         wrong = [f"the {n} {panel} is not a text" for n in _TEXTS if not isinstance(values[n], str)]
-        for name in ("x_invert", "y_invert"):
-            if not isinstance(values[name], bool):
-                wrong.append(f"{name} {panel} is neither true nor false")
+        odd = [name for name in ("x_invert", "y_invert") if not isinstance(values[name], bool)]
+        wrong += [f"{name} {panel} is neither true nor false" for name in odd]
         if type(self.averages) is not int or self.averages < 0 or (self.averages and self.kind != "line"):
             wrong.append(f"averages {panel} is {self.averages!r}: only a line panel has parts")
         for name, kind in (("lines", Line), ("headlines", str), ("marks", str)):

@@ -73,10 +73,14 @@ class Cloud:
         G and L.
     warms : (moment, 2)
         Derivative of the logarithm of the gas temperature by x at constant volume.
-    clear_heat, liquid_heat
-        Heat capacities, in k: of the whole parcel at constant pressure if no vapour condenses; of liquid and nuclei.
-    slope, expansion
-        d ln T / d ln p along the adiabat, and the time derivative of the logarithm of the volume.
+    clear_heat, cloudy_heat, liquid_heat
+        Heat capacities, in k: of the whole parcel at constant pressure if no vapour condenses, and with the heat of
+        condensation; of liquid and nuclei.
+    dries
+        Number of molecules of vapour that a cloud gains per unit of entropy, which is k, at constant pressure.
+    slope, vapour_slope, expansion
+        Along the adiabat d ln T / d ln p, and the derivative of the number of molecules of vapour by ln p, zero in
+        clear air; and the time derivative of the logarithm of the volume.
     height
         Height of the box over the thermal speed sqrt(kT/m) of air [mean free times].
     free_time, meets
@@ -156,8 +160,12 @@ class Cloud:
         heat = 3.5 + ascent.nuclei_heat + law.VAPOR_HEAT_CAPACITY * held + capacity * self.liquid / self.air
         wet = heat + held * (1.0 + held) * self.latent**2
         self.clear_heat: Array = self.air * heat
+        self.cloudy_heat: Array = self.clear_heat + self.vapour * (1.0 + held) * self.latent**2
+        self.dries: Array = self.vapour * (1.0 + held) * self.latent / self.cloudy_heat
         cloudy = (1.0 + held) * (1.0 + held * self.latent) / wet
         self.slope = np.where(self.liquid > 0.0, cloudy, (1.0 + held) / heat)
+        gains = self.vapour * (1.0 + held) * (self.latent * self.slope - 1.0)
+        self.vapour_slope: Array = np.where(self.liquid > 0.0, gains, 0.0)
         self.expansion: Array = np.gradient(np.log(t) - np.log(pressure), self.moment)
 
     def _stiffness(self, liquid_heat: Array) -> Array:
@@ -167,16 +175,6 @@ class Cloud:
         driven = -3.0 * self.warms - excess[:, None] * warmer
         driven[:, 0] -= 1.0 / self.vapour
         return -np.stack([driven, self.warms - warmer], axis=1)
-
-    @property
-    def cloudy_heat(self) -> Array:
-        """Heat capacity of the whole parcel at constant pressure with the heat of condensation, in k."""
-        return np.asarray(self.clear_heat + self.vapour * (1.0 + self.vapour / self.air) * self.latent**2)
-
-    @property
-    def dries(self) -> Array:
-        """Number of molecules of vapour that a cloud gains per unit of entropy, which is k, at constant pressure."""
-        return np.asarray(self.vapour * (1.0 + self.vapour / self.air) * self.latent / self.cloudy_heat)
 
     def seen(self, *, density: bool = False) -> Array:
         """Return how far a unit of x shifts the gas from the adiabat, as a share of T.
@@ -203,13 +201,6 @@ class Cloud:
         """Return by how much molecules in clusters warm the parcel, as a share of T or of the density temperature."""
         latent = self.latent - (3.5 if density else 0.0)  # they are missing among the light molecules of the gas
         return latent * self.clustered / (3.5 * self.all_molecules)
-
-    @property
-    def vapour_slope(self) -> Array:
-        """Derivative of the number of molecules of vapour by ln p along the adiabat: zero in clear air."""
-        share = self.vapour / self.air
-        along = self.vapour * (1.0 + share) * (self.latent * self.slope - 1.0)
-        return np.where(self.liquid > 0.0, along, 0.0)
 
     @property
     def change(self) -> Array:
