@@ -56,18 +56,14 @@ FILLED = 3.0
 JUMP = 0.563
 """Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas without collisions."""
 
+_PLANE = {"molecules": 3000, "plane": True, "knudsen": 0.05}
 series = (
     Series("exact", "duration", (50, 100, 200, 400), {"molecules": 3000}),
     Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2), {"molecules": 3000, "duration": 50}),
     Series("dsmc", "duration", (50, 100, 200, 400), {"molecules": 3000}),
     Series("dsmc", "molecules", (3000, 10_000, 30_000)),
-    Series("exact", "duration", (50, 100), {"molecules": 3000, "plane": True, "knudsen": 0.05}),
-    Series(
-        "stepped:applet-atmosphere",
-        "delta",
-        (8, 4, 2),
-        {"molecules": 3000, "plane": True, "knudsen": 0.05, "duration": 50},
-    ),
+    Series("exact", "duration", (50, 100), _PLANE),
+    Series("stepped:applet-atmosphere", "delta", (8, 4, 2), _PLANE | {"duration": 50}),
 )
 """Runs worth comparing: a column at rest is hardly sensitive to errors, except to a fall that creates energy."""
 
@@ -165,13 +161,11 @@ class Column:
         held = -math.expm1(-a)
         capacity = 0.5 * self.freedom + 1.0 - a * a * math.exp(-a) / held**2
         leaves = JUMP * capacity * held / ((d + 1.0 + turns) / 2.0 / math.sqrt(2.0 * math.pi))
-        thin = (
-            1.025 * 75.0 / 64.0 / self.diameter**2 * (1.25 if turns else 1.0) if d == 3 else 1.029 * 2.0 / self.diameter
-        )
+        spheres = 1.025 * 75.0 / 64.0 / self.diameter**2 * (1.25 if turns else 1.0)
+        thin = spheres if d == 3 else 1.029 * 2.0 / self.diameter
         above = 0.5 - 2.0 * math.exp(-a) + (a + 1.5) * math.exp(-2.0 * a)
         conducted = capacity * self.per_area * above / held**2 / (thin / math.sqrt(math.pi))
-        total: float = leaves + conducted
-        return total
+        return float(leaves + conducted)
 
     def settling(self, settings: Settings) -> float:
         r"""Return the time in which the column relaxes after a start out of equilibrium [reduced time].
@@ -274,39 +268,30 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     settled = _settled(column, settings)
     box = f"{scale.length / 1000.0:.2f} km wide, periodic, {settings.height:g} km high"
     width = f"{'discs' if plane else 'molecules'} {column.diameter * scale.length:.{1 if plane else 0}f} m wide"
-    return Setup(
-        parcel,
-        scale,
-        settings.duration,
-        FRAMES,
+    turning = "7/5" if settings.rotation else "5/3: the molecules do not rotate"
+    facts = {
+        "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
+        "real molecules per simulated one": f"{scale.weight:.2g}",
+        "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
+        "gamma": "2: the discs move in a plane and do not rotate" if plane else turning,
+        "scale height": f"{scale.length / 1000.0:.2f} km",
+        "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
+        "time": f"{settings.duration * scale.time / 60.0:.0f} minutes, of which the first "
+        f"{settled * settings.duration / FRAMES * scale.time / 60.0:.0f} are left out of the means",
+        "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
+        f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
+    }
+    # colder discs in strong gravity would be too many in the lowest cells of a page
+    warm = wall_temperature(parcel, scale, settings, low=200.0 if plane else 100.0, high=600.0)
+    pull = gravity(parcel, scale, settings, low=1.0, high=20.0)
+    knobs, measured = (
+        (warm, *pull) if settings.floor == "heat-bath" else (),
         (Air("floor"), Layers(LAYERS, column.memory)),
-        samples=8,
-        settle=settled,
-        time_unit="s",
-        facts={
-            "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
-            "real molecules per simulated one": f"{scale.weight:.2g}",
-            "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
-            "gamma": "2: the discs move in a plane and do not rotate"
-            if plane
-            else "7/5"
-            if settings.rotation
-            else "5/3: the molecules do not rotate",
-            "scale height": f"{scale.length / 1000.0:.2f} km",
-            "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
-            "time": f"{settings.duration * scale.time / 60.0:.0f} minutes, of which the first "
-            f"{settled * settings.duration / FRAMES * scale.time / 60.0:.0f} are left out of the means",
-            "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
-            f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
-        },
-        knobs=(
-            # colder discs in strong gravity would be too many in the lowest cells of a page
-            wall_temperature(parcel, scale, settings, low=200.0 if plane else 100.0, high=600.0),
-            *gravity(parcel, scale, settings, low=1.0, high=20.0),
-        )
-        if settings.floor == "heat-bath"
-        else (),
     )
+    return Setup(
+        parcel, scale, settings.duration, FRAMES, measured,
+        samples=8, settle=settled, time_unit="s", facts=facts, knobs=knobs,
+    )  # fmt: skip
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
@@ -406,10 +391,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     held = -math.expm1(-settings.height / scale)  # the share of an endless column that is below the ceiling
     below = ((share, -scale * math.log1p(-share * held)) for share in (0.5, 0.75, 0.9))
     guides = tuple(("y", height, f"{100.0 * share:.0f} % below {height:.1f} km") for share, height in below)
-    thins, warm = (
-        measured("layer_pressure", "barometric law, finite molecules"),
-        measured("layer_temperature", "isothermal"),
-    )
+    thins = measured("layer_pressure", "barometric law, finite molecules")
+    warm = measured("layer_temperature", "isothermal")
     numbers, title = ("scale_height", "mean_surface_pressure"), "At rest it is as warm above as below"
     return (
         over_height("The air thins with height", thins, "pressure", "hPa", *numbers, guides=guides),

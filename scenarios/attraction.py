@@ -242,25 +242,19 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     fluid = law.SIMPLE_FLUIDS[settings.substance]
     warmth = _warmth(settings)
     cold = f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder."
+    facts = {
+        "molecules": f"spheres of {scale.length * 1e9:.3f} nm, with a well of {fluid.name}: "
+        f"{scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
+        "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
+        "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
+        "units": f"time {scale.time * 1e12:.2f} ps, pressure {round(scale.pressure / 1e2, -3):.0f} hPa",
+        "not water": "the critical temperature of water is four times as high (hydrogen bonds are not modelled)",
+    }
+    duration, measured = settings.si.duration / scale.time, (Air(), Clusters(n, _liquid_density(settings)), *slab)
     return Setup(
-        parcel,
-        scale,
-        settings.si.duration / scale.time,
-        FRAMES,
-        (Air(), Clusters(n, _liquid_density(settings)), *slab),
-        samples=10 if slab else 4,
-        settle=SETTLE,
-        facts={
-            "molecules": f"spheres of {scale.length * 1e9:.3f} nm, with a well of {fluid.name}: "
-            f"{scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
-            "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
-            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
-            "units": f"time {scale.time * 1e12:.2f} ps, pressure {round(scale.pressure / 1e2, -3):.0f} hPa",
-            "not water": "the critical temperature of water is four times as high (hydrogen bonds are not modelled)",
-        },
-        knobs=tuple(knobs),
-        doubts=(cold,) if warmth < 0.65 else (),
-    )
+        parcel, scale, duration, FRAMES, measured, samples=10 if slab else 4, settle=SETTLE, facts=facts,
+        knobs=tuple(knobs), doubts=(cold,) if warmth < 0.65 else (),
+    )  # fmt: skip
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
@@ -577,10 +571,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         "zJ",
     )
     if settings.heating:
-        title, line = (
-            "Heat first warms the drop, then evaporates it",
-            Line("heat_from_bath", "air_temperature", "molecules"),
-        )
+        title = "Heat first warms the drop, then evaporates it"
+        line = Line("heat_from_bath", "air_temperature", "molecules")
         axes: dict[str, Any] = {"x_unit": "zJ", "y_label": "temperature", "y_unit": "K", "averages": 50}
         numbers = "latent_heat", "vapor_heat_capacity"
         heated = Panel("line", title, (line,), "heat supplied", headlines=numbers, **axes)
@@ -593,10 +585,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     )  # fmt: skip
     if start in ("slab", "pool"):
         title = "Liquid beside its vapour" if start == "slab" else "A pool, and vapour that thins out"
-        line, numbers = (
-            Line("number_density", "height", "molecules", error="number_density_se"),
-            ("liquid_density", "vapor_density"),
-        )
+        line = Line("number_density", "height", "molecules", error="number_density_se")
+        numbers = "liquid_density", "vapor_density"
         axes = {"x_unit": "nm-3", "y_unit": "nm", "x_scale": "log", "headlines": numbers if start == "slab" else ()}
         profile = Panel("profile", title, (line,), "molecules per volume", **axes)
         pressure = over_time(

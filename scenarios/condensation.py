@@ -85,15 +85,8 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray | tuple[()] =
         return Mist(water(start.scale), kT=1.0, nuclei=heat, area=settings.area * start.side * start.side)
     ball = settings.drop_size * MOLECULE
     position = tuple((float(x), float(y), float(z)) for x, y, z in place)
-    return Drops(
-        water(start.scale),
-        kT=1.0,
-        nuclei=heat,
-        position=position,
-        nucleus=ball,
-        nucleus_mass=CORE,
-        molecule_radius=ball,
-    )
+    kind: dict[str, Any] = {"nucleus": ball, "nucleus_mass": CORE, "molecule_radius": ball}
+    return Drops(water(start.scale), kT=1.0, nuclei=heat, position=position, **kind)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -113,26 +106,19 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     else:
         parcel = engine.begin(Start(n, (*WARM, Scattered())), liquid=_liquid(settings, start), **box)
     memory = start.memory(_faces(settings, start))
-    return Setup(
-        parcel,
-        scale,
-        settings.si.duration / scale.time,
-        FRAMES,
-        (Air(), Water(), DropSizes()) if drops else (Air(), Water()),
-        samples=4,
-        settle=SETTLE,
-        facts={
-            "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
-            "real molecules per simulated one": "1",
-            "exaggeration": f"none in the gas; the drops are {settings.drop_size:g} times as wide as real ones"
-            if drops
-            else "none in the gas; the droplets have far more area than so little water could have",
-            "vapour at the start": f"{start.vapour} molecules; {start.full:.0f} saturate the air",
-            "time to condense": f"{memory * 1e9:.2g} ns",
-            "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % in each sample",
-        },
-        knobs=(wall_temperature(parcel, scale, settings, low=-20.0, high=60.0),),
-    )
+    duration, measured = settings.si.duration / scale.time, (Air(), Water(), *((DropSizes(),) if drops else ()))
+    facts = {
+        "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
+        "real molecules per simulated one": "1",
+        "exaggeration": f"none in the gas; the drops are {settings.drop_size:g} times as wide as real ones"
+        if drops
+        else "none in the gas; the droplets have far more area than so little water could have",
+        "vapour at the start": f"{start.vapour} molecules; {start.full:.0f} saturate the air",
+        "time to condense": f"{memory * 1e9:.2g} ns",
+        "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % in each sample",
+    }
+    knobs = (wall_temperature(parcel, scale, settings, low=-20.0, high=60.0),)
+    return Setup(parcel, scale, duration, FRAMES, measured, samples=4, settle=SETTLE, facts=facts, knobs=knobs)
 
 
 def _faces(settings: Settings, start: MoistBox) -> float:
@@ -141,8 +127,7 @@ def _faces(settings: Settings, start: MoistBox) -> float:
         return settings.area
     held = max(start.vapour - start.full, 0.0) / settings.drops
     reach = settings.drop_size * MOLECULE * (1.0 + held) ** (1.0 / 3.0) + 0.5
-    faces: float = settings.drops * 4.0 * math.pi * (reach / start.side) ** 2
-    return faces
+    return float(settings.drops * 4.0 * math.pi * (reach / start.side) ** 2)
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
@@ -181,9 +166,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         return ()
     vapour = late.water_vapor_partial_pressure
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
-    share = start.share
+    share = start.share_at(start.temperature)
     # if only few molecules came and went, blocks tell little of the error: use a Poisson number with this memory
-    few = start.flux * faces * start.face * lasted < FEW
+    few = start.flux_at(start.temperature) * faces * start.face * lasted < FEW
     alone = math.sqrt(2.0 * memory / lasted * share / start.full) if few else 0.0
     humid, wet = late.relative_humidity_theory, late.water_vapor_partial_pressure_theory
     both = late.condensation_rate_theory

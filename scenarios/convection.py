@@ -143,8 +143,7 @@ class Settings(SceneSettings):
         """The gravity under which the box is `HEIGHTS` scale heights high [m s-2]."""
         si = self.si
         light = 0.5 * BOLTZMANN * (si.floor_temperature + si.ceiling_temperature) / DRY_AIR.molecule_mass / si.height
-        most: float = math.floor(100.0 * HEIGHTS * light) / 100.0
-        return most
+        return float(math.floor(100.0 * HEIGHTS * light) / 100.0)
 
     def check(self) -> None:
         """Refuse a weight that would leave hardly any air below the ceiling."""
@@ -318,36 +317,29 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         else "the air stays at rest"
     )
     flow = Flow(box.rows, box.columns, FRAMES // 2, chimney=settings.tracers == "chimney")
-    return Setup(
-        parcel,
-        scale,
-        settings.si.duration / scale.time,
-        FRAMES,
-        (Air("floor"), flow, Layers(box.rows, memory, flow=flow)),
-        samples=4,
-        settle=SETTLE,
-        time_unit="s",
-        facts={
-            "box": f"{depth}, {settings.width * settings.height:.3g} km wide, {settings.height:g} km high",
-            "real molecules per simulated one": f"{scale.weight:.2g}",
-            "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
-            f"temperature falls by {steep:.3g} K/km if heat is conducted",
-            "adiabat": f"{1000.0 * lapse:.3g} K/km at the mean density",
-            "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
-            "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
-            "Knudsen number": f"{path / box.height:.2g}, mean free path in heights",
-            "onset by linear theory": onset,
-            "time": f"{settings.duration:g} s, of which the first {settings.duration * SETTLE / FRAMES:.0f} are left "
-            "out of the means",
-        },
-        knobs=(
-            *(
-                wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
-                for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
-            ),
-            *gravity(parcel, scale, settings, low=LEAST_GRAVITY, high=settings.most_gravity),
-        ),
+    facts = {
+        "box": f"{depth}, {settings.width * settings.height:.3g} km wide, {settings.height:g} km high",
+        "real molecules per simulated one": f"{scale.weight:.2g}",
+        "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
+        f"temperature falls by {steep:.3g} K/km if heat is conducted",
+        "adiabat": f"{1000.0 * lapse:.3g} K/km at the mean density",
+        "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
+        "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
+        "Knudsen number": f"{path / box.height:.2g}, mean free path in heights",
+        "onset by linear theory": onset,
+        "time": f"{settings.duration:g} s, of which the first {settings.duration * SETTLE / FRAMES:.0f} are left "
+        "out of the means",
+    }
+    warmths = (
+        wall_temperature(parcel, scale, settings, low=-250.0, high=500.0, name=name, wall=wall)
+        for name, wall in zip(("floor_temperature", "ceiling_temperature"), box.walls, strict=True)
     )
+    knobs = *warmths, *gravity(parcel, scale, settings, low=LEAST_GRAVITY, high=settings.most_gravity)
+    duration, measured = settings.si.duration / scale.time, (Air("floor"), flow, Layers(box.rows, memory, flow=flow))
+    return Setup(
+        parcel, scale, duration, FRAMES, measured,
+        samples=4, settle=SETTLE, time_unit="s", facts=facts, knobs=knobs,
+    )  # fmt: skip
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
@@ -466,16 +458,12 @@ def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     wind = late.horizontal_wind.values
     _, columns, rows = wind.shape
     middle = wind[:, columns // 4 : columns - columns // 4].mean(axis=1)
+    onshore = overlapping_average(-middle[:, : rows // 2].mean(axis=1))
+    back = overlapping_average(middle[:, rows // 2 :].mean(axis=1))
     return (
-        Headline.of_mean(
-            "onshore_wind", "wind to the warm side, lower half",
-            overlapping_average(-middle[:, : rows // 2].mean(axis=1)), None, "m s-1",
-        ),
-        Headline.of_mean(
-            "return_wind", "wind to the cold side, upper half",
-            overlapping_average(middle[:, rows // 2 :].mean(axis=1)), None, "m s-1",
-        ),
-    )  # fmt: skip
+        Headline.of_mean("onshore_wind", "wind to the warm side, lower half", onshore, None, "m s-1"),
+        Headline.of_mean("return_wind", "wind to the cold side, upper half", back, None, "m s-1"),
+    )
 
 
 def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecules: int) -> tuple[Headline, ...]:
@@ -490,16 +478,10 @@ def _grown(dataset: "xr.Dataset", box: Box, rates: np.ndarray, last: int, molecu
     if not math.isfinite(found.mean):
         return ()
     rate = float(rates[strongest]) / box.scale.time
-    rolls = Headline.of_mean(
-        "growth_rate",
-        f"growth of the roll with {int(dataset.mode.values[strongest])} half waves",
-        BlockAverage(found.mean / step, found.standard_error / step),
-        rate if box.usual else None,
-        "s-1",
-        tolerance=LINEAR**2 * abs(rate),
-        reason="rolls that have grown are slower",
-    )
-    return (rolls,)
+    label = f"growth of the roll with {int(dataset.mode.values[strongest])} half waves"
+    mean, known = BlockAverage(found.mean / step, found.standard_error / step), rate if box.usual else None
+    off, reason = LINEAR**2 * abs(rate), "rolls that have grown are slower"
+    return (Headline.of_mean("growth_rate", label, mean, known, "s-1", tolerance=off, reason=reason),)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

@@ -138,23 +138,17 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         seed=settings.seed,
     )
     path = float(law.mean_free_path(density, 1.0))
-    return Setup(
-        parcel,
-        scale,
-        settings.duration / rate,
-        FRAMES,
-        (Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)),
-        facts={
-            "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, with periodic sides",
-            "real molecules per simulated one": "1",
-            "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
-            "gamma": "5/3: the molecules do not rotate",
-            "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",
-            "mixing time": f"{scale.time / rate * 1e9:.3g} ns: the left-right difference falls to 1/e",
-            "noise": f"the diffusion coefficient of one run scatters by {100.0 * _spread(settings):.1f} %",
-        },
-        right=right,
-    )
+    facts = {
+        "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, with periodic sides",
+        "real molecules per simulated one": "1",
+        "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+        "gamma": "5/3: the molecules do not rotate",
+        "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",
+        "mixing time": f"{scale.time / rate * 1e9:.3g} ns: the left-right difference falls to 1/e",
+        "noise": f"the diffusion coefficient of one run scatters by {100.0 * _spread(settings):.1f} %",
+    }
+    measured = Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)
+    return Setup(parcel, scale, settings.duration / rate, FRAMES, measured, facts=facts, right=right)
 
 
 def _spread(settings: Settings) -> float:

@@ -75,22 +75,16 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     lightest = 0.01
     scale = Scale(si.side, lightest, lightest * si.speed**2)
-    return Setup(
-        parcel,
-        scale,
-        si.duration / scale.time,
-        FRAMES,
-        (Air(), Discs(), Speeds(np.linspace(0.0, 5.0, 51), blocks=BLOCKS)),
-        settle=SETTLE,
-        time_unit="s",
-        facts={
-            "box": f"a table of {settings.side:g} m x {settings.side:g} m",
-            "masses": f"from 10 g to {10.0 * float(mass.max()):.0f} g",
-            "exaggeration": "none",
-            "gamma": "2: two degrees of freedom",
-            "noise": f"the mean energy of {n // 2} discs scatters by {100.0 / math.sqrt(n + 1.0):.0f} % in each sample",
-        },
-    )
+    facts = {
+        "box": f"a table of {settings.side:g} m x {settings.side:g} m",
+        "masses": f"from 10 g to {10.0 * float(mass.max()):.0f} g",
+        "exaggeration": "none",
+        "gamma": "2: two degrees of freedom",
+        "noise": f"the mean energy of {n // 2} discs scatters by {100.0 / math.sqrt(n + 1.0):.0f} % in each sample",
+    }
+    measured = Air(), Discs(), Speeds(np.linspace(0.0, 5.0, 51), blocks=BLOCKS)
+    duration = si.duration / scale.time
+    return Setup(parcel, scale, duration, FRAMES, measured, settle=SETTLE, time_unit="s", facts=facts)
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:

@@ -98,9 +98,8 @@ def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
     """Return the air over the pool at the start, according to theory."""
     si = settings.si
     vapour_pressure = si.humidity * float(law.saturation_vapor_pressure(si.temperature))
-    return AirOverPool(
-        settings.molecules, settings.pool, si.diameter, si.temperature, si.pressure, vapour_pressure, ideal
-    )
+    start = si.temperature, si.pressure, vapour_pressure
+    return AirOverPool(settings.molecules, settings.pool, si.diameter, *start, ideal)
 
 
 usual_engine = suited_engine
@@ -124,28 +123,21 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     end, rest = start.end, start.rest
     left = float(end.liquid)
     humidity = 100.0 * float(end.vapor_pressure / law.saturation_vapor_pressure(end.temperature))
-    return Setup(
-        parcel,
-        scale,
-        duration,
-        FRAMES,
-        (Air(), Water(), Leaving(substance.binding_energy)),
-        samples=3,
-        settle=min(_settled(start, settings), FRAMES - 1),
-        facts={
-            **parcel_facts(scale, start.sides),
-            **({"exaggeration": "none"} if settings.diameter == 0.37 else {}),
-            "vapour at the start": f"{start.vapour} molecules",
-            "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
-            + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")
-            + (f"{left:.0f} in the pool" if left > 0.0 else f"the pool dry and {humidity:.0f} % of humidity"),
-            "the same for this number of molecules": f"{rest.temperature - 273.15:.2f} degC",
-            "wet-bulb temperature": _wet_bulb(settings),
-            "time until vapour hits the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
-            "cooling because the piston lags": f"up to {start.loss(duration):.1g} K",
-        },
-        knobs=(walls, open_pool(parcel)),
-    )
+    facts = {
+        **parcel_facts(scale, start.sides),
+        **({"exaggeration": "none"} if settings.diameter == 0.37 else {}),
+        "vapour at the start": f"{start.vapour} molecules",
+        "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
+        + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")
+        + (f"{left:.0f} in the pool" if left > 0.0 else f"the pool dry and {humidity:.0f} % of humidity"),
+        "the same for this number of molecules": f"{rest.temperature - 273.15:.2f} degC",
+        "wet-bulb temperature": _wet_bulb(settings),
+        "time until vapour hits the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
+        "cooling because the piston lags": f"up to {start.loss(duration):.1g} K",
+    }
+    knobs = (walls, open_pool(parcel))
+    settle, measured = min(_settled(start, settings), FRAMES - 1), (Air(), Water(), Leaving(substance.binding_energy))
+    return Setup(parcel, scale, duration, FRAMES, measured, samples=3, settle=settle, facts=facts, knobs=knobs)
 
 
 def _wet_bulb(settings: Settings) -> str:

@@ -146,21 +146,15 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
     top = settings.si.top_pressure
     warmth = environment.adiabat(top) * ascent.finite_speed(top)
-    return Setup(
-        parcel,
-        scale,
-        duration,
-        FRAMES,
-        (Air(), Lift(driver, environment, scatter)),
-        facts={
-            **parcel_facts(scale, sides),
-            "gamma": "7/5" if settings.rotation else "5/3",
-            "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
-            "finite speed": f"warms the parcel by {warmth:.2g} K at the top",
-        },
-        knobs=(altitude(parcel, driver, lambda share: environment.height(share * duration * scale.time)),),
-        ends=True,
-    )
+    measured = Air(), Lift(driver, environment, scatter)
+    facts = {
+        **parcel_facts(scale, sides),
+        "gamma": "7/5" if settings.rotation else "5/3",
+        "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
+        "finite speed": f"warms the parcel by {warmth:.2g} K at the top",
+    }
+    knobs = (altitude(parcel, driver, lambda share: environment.height(share * duration * scale.time)),)
+    return Setup(parcel, scale, duration, FRAMES, measured, facts=facts, knobs=knobs, ends=True)
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:

@@ -87,17 +87,16 @@ usual_engine = suited_engine
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the moist parcel at the ground with its piston."""
-    si = settings.si
-    top = _top(settings)
-    return rise(
-        _ascent(settings),
-        engine,
-        height=lambda share: top * share,
-        around=lambda share: float(law.environment_temperature(top * share, si.temperature, si.lapse_rate)),
-        frames=FRAMES,
-        samples=SAMPLES,
-        seed=settings.seed,
-    )
+    si, top = settings.si, _top(settings)
+
+    def height(share: float) -> float:
+        return top * share
+
+    def around(share: float) -> float:
+        return float(law.environment_temperature(height(share), si.temperature, si.lapse_rate))
+
+    way = _ascent(settings)
+    return rise(way, engine, height=height, around=around, frames=FRAMES, samples=SAMPLES, seed=settings.seed)
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:

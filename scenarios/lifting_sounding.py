@@ -103,12 +103,9 @@ def _around(settings: Settings, pressure: np.ndarray) -> tuple[np.ndarray, np.nd
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the ascent according to theory; it ends at the top of the sounding at the latest."""
     found = _read(settings.sounding)
-    ground = float(found.pressure[0])
-    top = max(settings.si.top_pressure, float(found.pressure[-1]))
-    route = np.geomspace(ground, top, 400)
-    return MoistAscent.of(
-        settings, settings.ascent, route, float(found.temperature[0]), ground, float(found.dewpoint[0])
-    )
+    ground, warmth, dewpoint = (float(each[0]) for each in (found.pressure, found.temperature, found.dewpoint))
+    route = np.geomspace(ground, max(settings.si.top_pressure, float(found.pressure[-1])), 400)
+    return MoistAscent.of(settings, settings.ascent, route, warmth, ground, dewpoint)
 
 
 usual_engine = suited_engine
@@ -121,15 +118,14 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     shares = np.linspace(0.0, 1.0, len(route))
     heights = _between(settings, _height(settings.sounding), route)
     temperatures = _around(settings, route)[0]
-    setup = rise(
-        ascent,
-        engine,
-        height=lambda share: float(np.interp(share, shares, heights)),
-        around=lambda share: float(np.interp(share, shares, temperatures)),
-        frames=FRAMES,
-        samples=SAMPLES,
-        seed=settings.seed,
-    )
+
+    def height(share: float) -> float:
+        return float(np.interp(share, shares, heights))
+
+    def around(share: float) -> float:
+        return float(np.interp(share, shares, temperatures))
+
+    setup = rise(ascent, engine, height=height, around=around, frames=FRAMES, samples=SAMPLES, seed=settings.seed)
     found = _read(settings.sounding)
     facts = {"sounding": f"{found.name}: {len(found)} levels"}
     facts |= {f"remark {number}": remark for number, remark in enumerate([*found.remarks, *found.doubts], 1)}

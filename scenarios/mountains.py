@@ -98,15 +98,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     def around(share: float) -> float:
         return float(law.environment_temperature(_height(settings, share), si.temperature, si.lapse_rate))
 
-    return rise(
-        _ascent(settings),
-        engine,
-        height=lambda share: _height(settings, share),
-        around=around,
-        frames=FRAMES,
-        samples=SAMPLES,
-        seed=settings.seed,
-    )
+    way, height = _ascent(settings), functools.partial(_height, settings)
+    return rise(way, engine, height=height, around=around, frames=FRAMES, samples=SAMPLES, seed=settings.seed)
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:

@@ -26,28 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from atmosbox.scene.engines import EngineChoice
     from atmosbox.scene.headline import Headline
-    from atmosbox.scene.instruments import (
-        LAWS,
-        Air,
-        Clusters,
-        Discs,
-        DropSizes,
-        Environment,
-        Flow,
-        Instrument,
-        Layers,
-        Leaving,
-        Lift,
-        Mixing,
-        MoistLift,
-        Molecules,
-        Nuclei,
-        Readings,
-        Slab,
-        Speeds,
-        Water,
-        wall_laws,
-    )
+    from atmosbox.scene.instruments import *
     from atmosbox.scene.panels import Line, Panel
     from atmosbox.scene.settings import SceneSettings, setting
     from atmosbox.scene.setup import Series, Setup
@@ -55,19 +34,11 @@ if TYPE_CHECKING:
     from atmosbox.scene.units import Scale
 
 _HOMES = {
-    "engines": "EngineChoice",
-    "headline": "Headline",
-    "instruments": (
-        "LAWS Air Clusters Discs DropSizes Environment Flow Instrument Layers Leaving "
-        "Lift Mixing MoistLift Molecules Nuclei Readings Slab Speeds Water wall_laws"
-    ),
-    "panels": "Line Panel",
-    "settings": "SceneSettings setting",
-    "setup": "Series Setup",
-    "statistics": "block_average",
-    "units": "Scale",
-}
-_HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
+    "EngineChoice": "engines", "Headline": "headline", "Line": "panels", "Panel": "panels", "Scale": "units",
+    "SceneSettings": "settings", "Series": "setup", "Setup": "setup", "block_average": "statistics",
+    "setting": "settings",
+}  # fmt: skip
+"""The files of the names that are not instruments."""
 
 __all__ = [
     "LAWS", "Air", "Clusters", "Discs", "DropSizes", "EngineChoice", "Environment", "Flow", "Headline", "Instrument",
@@ -78,9 +49,10 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import a public name from the file that defines it."""
-    if name not in _HOME_OF:
+    if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    home = _HOMES.get(name, "instruments")
+    value = getattr(importlib.import_module(f"{__name__}.{home}"), name)
     globals()[name] = value
     return value
 

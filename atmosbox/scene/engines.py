@@ -9,8 +9,9 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 from atmosbox.errors import Option, SettingError, either, on_command_line
 from atmosbox.scene.settings import Parameter, Value, by_name
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ENGINES", "EXACT", "FEW", "Engine", "EngineChoice", "choose", "names", "suited", "suited_engine", "used"]
 
-_Kind: TypeAlias = "Callable[[], Callable[..., Parcel]]"
-
 
 @dataclass(frozen=True)
 class Engine:
@@ -40,7 +39,7 @@ class Engine:
     summary
         What it does, in one line.
     parcel
-        Function that returns the class of its parcels; nothing of the engine is imported before it is called.
+        The class of its parcels, whose file is imported when the first box is made.
     parameters
         Its options.
     ideal
@@ -49,63 +48,21 @@ class Engine:
         Publication of its method.
     moist, drops, attracting
         The same of parcels with a liquid in them, with drops that have a size of their own, and of molecules that
-        attract each other; None if there are none.
+        attract each other; empty if there are none.
     presets
         Names that stand for several options at once.
     """
 
     name: str
     summary: str
-    parcel: _Kind
+    parcel: str
     parameters: tuple[Parameter, ...] = ()
     ideal: bool = False
     reference: str = ""
-    moist: _Kind | None = None
-    drops: _Kind | None = None
-    attracting: _Kind | None = None
+    moist: str = ""
+    drops: str = ""
+    attracting: str = ""
     presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
-
-
-def _exact() -> type[Parcel]:
-    from atmosbox.engine import ParcelSet
-
-    return ParcelSet
-
-
-def _exact_moist() -> type[Parcel]:
-    from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-
-    return MoistParcelSet
-
-
-def _exact_drops() -> type[Parcel]:
-    from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
-
-    return DropParcelSet
-
-
-def _exact_attracting() -> type[Parcel]:
-    from atmosbox.engine import AttractingParcelSet
-
-    return AttractingParcelSet
-
-
-def _stepped() -> type[Parcel]:
-    from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
-
-    return SteppedParcel
-
-
-def _dsmc() -> type[Parcel]:
-    from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
-
-    return DsmcParcel
-
-
-def _dsmc_moist() -> type[Parcel]:
-    from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
-
-    return MoistDsmcParcel
 
 
 def _option(name: str, default: Value, help: str, low: float | None = None, high: float | None = None) -> Parameter:
@@ -125,17 +82,17 @@ _ALL = (
     Engine(
         "exact",
         "every contact and every wall hit at its exact time, in order",
-        _exact,
+        "ParcelSet",
         (_COLLISIONS,),
         reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
-        moist=_exact_moist,
-        drops=_exact_drops,
-        attracting=_exact_attracting,
+        moist="MoistParcelSet",
+        drops="DropParcelSet",
+        attracting="AttractingParcelSet",
     ),
     Engine(
         "stepped",
         "equal steps, as in applets: all molecules move, then those that overlap and approach collide",
-        _stepped,
+        "SteppedParcel",
         (
             _option("delta", 0.05, _DELTA, 1e-6, 1e3),
             _word("rule", _RULES, "which pairs collide, and how they are found"),
@@ -152,7 +109,7 @@ _ALL = (
     Engine(
         "dsmc",
         "equal steps: in each cell partners of collisions are drawn at random; for many molecules of a thin gas",
-        _dsmc,
+        "DsmcParcel",
         (
             _option("dt", 0.2, "time step in mean free times", 1e-4, 10.0),
             _option("occupancy", 10.0, "mean number of molecules in a cell", 1.0, 1e4),
@@ -162,9 +119,19 @@ _ALL = (
         ),
         ideal=True,
         reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
-        moist=_dsmc_moist,
+        moist="MoistDsmcParcel",
     ),
 )
+_FILES: Mapping[str, Callable[[], Any]] = {
+    "ParcelSet": lambda: import_module("atmosbox.engine.exact.parcelset"),
+    "MoistParcelSet": lambda: import_module("atmosbox.engine.liquid.moist_parcelset"),
+    "DropParcelSet": lambda: import_module("atmosbox.engine.liquid.drop_parcelset"),
+    "AttractingParcelSet": lambda: import_module("atmosbox.engine.wells.attracting_parcelset"),
+    "SteppedParcel": lambda: import_module("atmosbox.engine.stepped.stepped_parcel"),
+    "DsmcParcel": lambda: import_module("atmosbox.engine.dsmc.dsmc_parcel"),
+    "MoistDsmcParcel": lambda: import_module("atmosbox.engine.dsmc.moist_dsmc_parcel"),
+}
+"""The files of the classes of parcels."""
 ENGINES: Mapping[str, Engine] = MappingProxyType({engine.name: engine for engine in _ALL})
 """The engines by name; the first is exact up to rounding."""
 
@@ -235,24 +202,24 @@ class EngineChoice:
         """
         from atmosbox.engine import Drops
 
-        kind: Any = self.engine.parcel
+        kind = self.engine.parcel
         if "liquid" in box:
-            if self.engine.moist is None:
-                able = either("engine", [engine.name for engine in ENGINES.values() if engine.moist is not None])
+            if not self.engine.moist:
+                able = either("engine", [engine.name for engine in ENGINES.values() if engine.moist])
                 raise SettingError("engine", str(self), "cannot simulate liquid water", *able)
             kind = self.engine.drops if isinstance(box["liquid"], Drops) else self.engine.moist
-            if kind is None:
+            if not kind:
                 problem = "has no drops with a size of their own"
                 raise SettingError("engine", self.name, problem, Option("engine", "exact"), ", or a mist")
         if "well" in box:
             kind = self.engine.attracting
-            if kind is None:
+            if not kind:
                 raise SettingError("engine", str(self), "cannot simulate attraction", Option("engine", "exact"))
         if self.described:
             from atmosbox.scene.described_parcel import DescribedParcel
 
             return DescribedParcel(position, velocity, **box)
-        parcel: Parcel = kind()(position, velocity, **self.options, **box)
+        parcel: Parcel = getattr(_FILES[kind](), kind)(position, velocity, **self.options, **box)
         return parcel
 
     def begin(self, start: Start, *, rng: Source | None = None, **box: Any) -> Parcel:

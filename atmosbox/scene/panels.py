@@ -89,15 +89,9 @@ _SKEWT_AXES: dict[str, Any] = {
     "x_unit": "degC", "y_unit": "hPa", "x_scale": "linear", "y_scale": "log", "x_invert": False, "y_invert": True
 }  # fmt: skip
 ATMOSPHERE_VARIABLES = (
-    "parcel_temperature",
-    "environment_pressure",
-    "cloud_liquid_water_mixing_ratio",
-    "largest_haze_mixing_ratio",
-    "rain_mixing_ratio",
-    "relative_humidity",
-    "cloud_base",
-    "vapor_molecule_count",
-)
+    "parcel_temperature", "environment_pressure", "cloud_liquid_water_mixing_ratio", "largest_haze_mixing_ratio",
+    "rain_mixing_ratio", "relative_humidity", "cloud_base", "vapor_molecule_count",
+)  # fmt: skip
 """Variables of the parcel that the picture of an atmosphere shows in addition to its height, if the run has them."""
 _TEXTS = ("x_label", "y_label", "x_unit", "y_unit", "note")
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
@@ -193,9 +187,8 @@ class Panel:
             check_choice("panel", name, getattr(self, name), SCALES)
         panel, values = f"of the panel {self.title!r}", vars(self)
         wrong = [f"the {n} {panel} is not a text" for n in _TEXTS if not isinstance(values[n], str)]
-        for name in ("x_invert", "y_invert"):
-            if not isinstance(values[name], bool):
-                wrong.append(f"{name} {panel} is neither true nor false")
+        odd = [name for name in ("x_invert", "y_invert") if not isinstance(values[name], bool)]
+        wrong += [f"{name} {panel} is neither true nor false" for name in odd]
         if type(self.averages) is not int or self.averages < 0 or (self.averages and self.kind != "line"):
             wrong.append(f"averages {panel} is {self.averages!r}: only a line panel has parts")
         for name, kind in (("lines", Line), ("headlines", str), ("marks", str)):

@@ -25,17 +25,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar, Never, Self, TypeVar
 
 from atmosbox.errors import Given, Option, Setting, SettingError, UnitError, UnknownSettingError, shown
-from atmosbox.scene.conversion import (
-    MEASURES,
-    converted,
-    declared_unit,
-    known_unit,
-    number_and_unit,
-    phrase,
-    slashed,
-    to_si,
-    typed,
-)
+from atmosbox.scene import conversion
 from atmosbox.scene.spelling import field_name, nearest, plain
 
 __all__ = ["Parameter", "SceneSettings", "Value", "by_name", "setting"]
@@ -86,7 +76,7 @@ class Parameter:
             return "on or off"
         if self.kind == "str":
             return " or ".join(self.choices) if self.choices else "any text"
-        low, high = (None if limit is None else phrase(limit, self.unit) for limit in (self.low, self.high))
+        low, high = (None if limit is None else conversion.phrase(limit, self.unit) for limit in (self.low, self.high))
         if low and high:
             return f"{low} to {high}"
         if low or high:
@@ -99,11 +89,11 @@ class Parameter:
         value = self.default if value is None else value
         if isinstance(value, bool):
             return "on" if value else "off"
-        return shlex.quote(value) if isinstance(value, str) else typed(value, self.unit)
+        return shlex.quote(value) if isinstance(value, str) else conversion.typed(value, self.unit)
 
     def said(self, value: Value) -> str:
         """Return a value with its unit for a sentence or a table."""
-        return self.typed(value) if isinstance(value, bool | str) else phrase(value, self.unit)
+        return self.typed(value) if isinstance(value, bool | str) else conversion.phrase(value, self.unit)
 
     def parse(self, value: object) -> Value:
         """Return what a user gave for this setting, in its documented unit.
@@ -142,13 +132,13 @@ class Parameter:
         """
         number = self.kind in ("int", "float")
         try:
-            unit = number_and_unit(value)[1]
+            unit = conversion.number_and_unit(value)[1]
         except ValueError:  # words, or several numbers
             return not number or any(c.isdigit() for c in str(value))
-        known = known_unit(unit or "1")
+        known = conversion.known_unit(unit or "1")
         if known is None:
             return True  # a row of numbers, or a unit that is misspelled
-        return number and (not unit or known.si == declared_unit(self.unit).si)
+        return number and (not unit or known.si == conversion.declared_unit(self.unit).si)
 
     def _switch(self, value: object) -> bool:
         if isinstance(value, str) and (word := value.strip().lower()) in _SWITCH:
@@ -170,9 +160,9 @@ class Parameter:
 
     def _number(self, value: object) -> float:
         try:
-            exact, unit = number_and_unit(value)
-            if unit not in ("", self.unit, slashed(self.unit)):
-                exact = Decimal(repr(converted(float(exact), unit, self.unit)))
+            exact, unit = conversion.number_and_unit(value)
+            if unit not in ("", self.unit, conversion.slashed(self.unit)):
+                exact = Decimal(repr(conversion.converted(float(exact), unit, self.unit)))
             if self.kind == "int" and exact != exact.to_integral_value():
                 raise ValueError("is not whole")
         except ValueError as error:
@@ -208,7 +198,8 @@ class Parameter:
     @property
     def _wanted(self) -> str:
         """What is allowed, with its kind: "a temperature from -100 degC to 500 degC"."""
-        kind = "a percentage" if self.unit == "%" else MEASURES.get(declared_unit(self.unit).si, "a quantity")
+        measured = conversion.MEASURES.get(conversion.declared_unit(self.unit).si, "a quantity")
+        kind = "a percentage" if self.unit == "%" else measured
         if self.kind == "int":
             kind = "a whole number" + ("" if self.unit == "1" else f" of {self.unit}")
         limits = (self.low is not None) + (self.high is not None)
@@ -218,7 +209,7 @@ class Parameter:
         """Return a value, or else the default, for the remedy of an error."""
         value = self.default if value is None else value
         bare = isinstance(value, bool | str) or self.unit == "1"
-        return self.given_as(self.name, value if bare else typed(float(value), self.unit))
+        return self.given_as(self.name, value if bare else conversion.typed(float(value), self.unit))
 
     def _refusal(self, value: object, problem: str, instead: Value | None = None) -> SettingError:
         return SettingError(self.name, value, problem, self.instead(instead))
@@ -401,8 +392,8 @@ class SceneSettings:
     @functools.cached_property
     def si(self) -> SimpleNamespace:
         """The same names with their values in SI units: degC in K, hPa in Pa, K/km in K m-1, % in 1."""
+        values, to_si = self.as_dict(), conversion.to_si
         units = {p.name: p.unit for p in self.describe() if p.unit not in ("", "1")}
-        values = self.as_dict()
         return SimpleNamespace(**values | {name: to_si(float(values[name]), unit) for name, unit in units.items()})
 
     def as_dict(self) -> dict[str, Value]:
@@ -427,7 +418,7 @@ def _checked(cls: type[SceneSettings], name: str, annotation: Any) -> Parameter:
     named = replace(declared, name=name, kind=kind)
     try:
         if declared.unit:
-            declared_unit(declared.unit)
+            conversion.declared_unit(declared.unit)
         return replace(named, default=named.parse(declared.default))
     except SettingError as error:
         raise TypeError(f"{where} has a unit or a default that it does not allow: {error}") from error

@@ -143,8 +143,7 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
         # variance of the mean of all values: blocks are weighted by length, corrected for each block's part in that
         # mean
         squares = np.sum((sums[length:] - sums[:-length]) ** 2, axis=0) / length
-        found: NDArray[np.float64] = squares / ((n - length) * (n - length + 1))
-        return found
+        return np.asarray(squares / ((n - length) * (n - length + 1)))
 
     half = n // (2 * blocks)
     whole = variance(2 * half)

@@ -31,14 +31,9 @@ _LEAST = 0.9
 
 
 def convection_headlines(
-    dataset: xr.Dataset,
-    ascent: MoistAscent,
-    frames: int,
-    samples: int,
-    around: Callable[[Array], Array],
-    *,
+    dataset: xr.Dataset, ascent: MoistAscent, frames: int, samples: int, around: Callable[[Array], Array], *,
     ideal: bool,
-) -> tuple[Headline, ...]:
+) -> tuple[Headline, ...]:  # fmt: skip
     """Return CAPE, CIN and the levels between which the parcel rises by itself, from a whole ascent.
 
     ``around`` gives the virtual temperature [K] of the environment at pressures [Pa].
@@ -47,15 +42,15 @@ def convection_headlines(
     warmer = dataset.parcel_density_temperature.values - around(pressure)
     levels = np.concatenate([[ascent.pressure], outside, [ascent.top_pressure]])
     beside, smooth = around(levels), _smoother(len(outside))
-    path = ascent.planned[1]
 
     def energies(differences: Array, base: float) -> law.Convection:
         # it starts with the environment's temperature and vapour
-        whole = np.concatenate([[0.0], smooth @ differences, [(smooth @ differences)[-1]]])
+        smoothed = smooth @ differences
+        whole = np.concatenate([[0.0], smoothed, smoothed[-1:]])
         return law.cape_cin(levels, beside, beside + whole, base)
 
     here = energies(warmer, ascent.base)
-    route = np.array(ascent.route)
+    route, path = np.array(ascent.route), ascent.planned[1]
     dense = law.density_temperature(path.temperature, path.vapor, path.liquid)
     expected = law.cape_cin(route, around(route), dense, ascent.base)
 

@@ -97,7 +97,8 @@ def drift(cloud: Cloud) -> Array:
     """Return how much warmer a parcel is than its adiabat on average if it does not rain, as a share of T."""
     gain = entropy_gain(cloud)
     entropy = gathered(gain.friction + gain.condensing, cloud.moment)
-    return np.asarray(entropy / cloud.heat + cloud.clusters() - np.einsum("ti,ti->t", cloud.seen(), cloud.behind))
+    heat = np.where(cloud.liquid > 0.0, cloud.cloudy_heat, cloud.clear_heat)
+    return np.asarray(entropy / heat + cloud.clusters() - np.einsum("ti,ti->t", cloud.seen(), cloud.behind))
 
 
 class Parcels(NamedTuple):

@@ -32,7 +32,7 @@ def rise(
     _, sides, excess = ascent.box(ideal=engine.ideal)
     mean_free_time = ascent.mean_free_time(ideal=engine.ideal)
     duration = ascent.length * mean_free_time
-    shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
+    shares, outside = ascent.planned[0], np.array(ascent.route)
     times, pressures = list(shares * duration), list(rounded(outside / scale.pressure))
     driver = FollowPressure(times, pressures, mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess)
     rain, area = RAIN / mean_free_time if ascent.rains else 0.0, ascent.area * float(sides[0] * sides[1])
@@ -56,13 +56,11 @@ def rise(
     base, rainy = ascent.base, {}
     if ascent.rains:
         rainy["rain"] = f"compared with theory if the cloud holds {1000.0 * least_cloud(ascent):.1f} g/kg or more"
+    climbs = bool(np.all(np.diff([height(float(share)) for share in np.linspace(0.0, 1.0, 101)]) > 0.0))
+    instruments = Air(), Water(rains=ascent.rains), MoistLift(driver, environment, curve, scatter)
     return Setup(
-        parcel,
-        scale,
-        duration,
-        frames,
-        (Air(), Water(rains=ascent.rains), MoistLift(driver, environment, curve, scatter)),
-        samples=samples,
+        parcel, scale, duration, frames, instruments, samples=samples, ends=True,
+        knobs=(altitude(parcel, driver, height) if climbs else way(parcel, driver),),
         facts={
             **parcel_facts(scale, sides),
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
@@ -71,11 +69,4 @@ def rise(
             **rainy,
             "known errors": f"theory is {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
         },
-        knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
-        ends=True,
-    )
-
-
-def _climbs(height: Profile) -> bool:
-    """Return whether the height increases all the time."""
-    return bool(np.all(np.diff([height(float(share)) for share in np.linspace(0.0, 1.0, 101)]) > 0.0))
+    )  # fmt: skip

@@ -64,26 +64,31 @@ class Cloud:
     ----------
     moment, pressure, temperature
         Time [mean free times at the start], pressure [Pa] and temperature [K]; all arrays are (moment,).
-    vapour, liquid, rained
-        Numbers of molecules according to theory, which leaves out clusters in clear air.
+    vapour, gas, liquid, rained
+        Numbers of molecules of vapour, of vapour and air, of liquid and of rain according to theory, which leaves out
+        clusters in clear air.
     clustered, haze
         Mean number of liquid molecules that fluctuations add to ``liquid``, and number above which liquid is a cloud.
     resists, yields : (moment, 2, 2)
         G and L.
     warms : (moment, 2)
         Derivative of the logarithm of the gas temperature by x at constant volume.
-    clear_heat, liquid_heat
-        Heat capacities, in k: of the whole parcel at constant pressure if no vapour condenses; of liquid and nuclei.
-    slope, expansion
-        d ln T / d ln p along the adiabat, and the time derivative of the logarithm of the volume.
+    clear_heat, cloudy_heat, liquid_heat
+        Heat capacities, in k: of the whole parcel at constant pressure if no vapour condenses, and with the heat of
+        condensation; of liquid and nuclei.
+    dries
+        Number of molecules of vapour that a cloud gains per unit of entropy, which is k, at constant pressure.
+    slope, vapour_slope, expansion
+        Along the adiabat d ln T / d ln p, and the derivative of the number of molecules of vapour by ln p, zero in
+        clear air; and the time derivative of the logarithm of the volume.
     height
         Height of the box over the thermal speed sqrt(kT/m) of air [mean free times].
     free_time, meets
         Mean free time of the gas, and mean time until a molecule of air hits the mist.
     hits
         Number of molecules that hit or leave the mist per unit of time.
-    humidity
-        Relative humidity, at most 1.
+    humidity, latent
+        Relative humidity, at most 1; latent heat of a molecule, in kT.
     air, all_molecules
         Molecules of dry air, and of air and water at the start.
     keeps, rains
@@ -117,12 +122,14 @@ class Cloud:
         self.all_molecules, self.air = ascent.molecules, float(ascent.molecules - ascent.vapour)
         per_mass = self.air / law.WATER_MASS_RATIO
         self.vapour: Array = np.maximum(path.vapor * per_mass, _NO_VAPOUR)
+        self.gas: Array = self.air + self.vapour
         self.liquid: Array = np.maximum(path.liquid, 0.0) * per_mass
         self.rained: Array = path.rain * per_mass
         self.keeps = float(ascent.keeps) if ascent.rains else math.inf
         self.rains = RAIN if ascent.rains else 0.0
         humidity = law.vapor_pressure(pressure, path.vapor) / law.saturation_vapor_pressure(t)
         self.humidity = np.where(self.liquid > 0.0, 1.0, np.clip(humidity, _NO_VAPOUR, 1.0))
+        self.latent: Array = law.BINDING_TEMPERATURE / t - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
         gas_heat = 2.5 * self.air + 3.0 * self.vapour
         self.warms = np.stack([3.0 / gas_heat, -1.0 / gas_heat], axis=1)
 
@@ -153,8 +160,12 @@ class Cloud:
         heat = 3.5 + ascent.nuclei_heat + law.VAPOR_HEAT_CAPACITY * held + capacity * self.liquid / self.air
         wet = heat + held * (1.0 + held) * self.latent**2
         self.clear_heat: Array = self.air * heat
+        self.cloudy_heat: Array = self.clear_heat + self.vapour * (1.0 + held) * self.latent**2
+        self.dries: Array = self.vapour * (1.0 + held) * self.latent / self.cloudy_heat
         cloudy = (1.0 + held) * (1.0 + held * self.latent) / wet
         self.slope = np.where(self.liquid > 0.0, cloudy, (1.0 + held) / heat)
+        gains = self.vapour * (1.0 + held) * (self.latent * self.slope - 1.0)
+        self.vapour_slope: Array = np.where(self.liquid > 0.0, gains, 0.0)
         self.expansion: Array = np.gradient(np.log(t) - np.log(pressure), self.moment)
 
     def _stiffness(self, liquid_heat: Array) -> Array:
@@ -165,34 +176,15 @@ class Cloud:
         driven[:, 0] -= 1.0 / self.vapour
         return -np.stack([driven, self.warms - warmer], axis=1)
 
-    @property
-    def cloudy_heat(self) -> Array:
-        """Heat capacity of the whole parcel at constant pressure with the heat of condensation, in k."""
-        return np.asarray(self.clear_heat + self.vapour * (1.0 + self.vapour / self.air) * self.latent**2)
-
-    @property
-    def dries(self) -> Array:
-        """Number of molecules of vapour that a cloud gains per unit of entropy, which is k, at constant pressure."""
-        return np.asarray(self.vapour * (1.0 + self.vapour / self.air) * self.latent / self.cloudy_heat)
-
-    @property
-    def heat(self) -> Array:
-        """Heat capacity of the whole parcel at constant pressure according to theory, in k: with or without a cloud."""
-        return np.where(self.liquid > 0.0, self.cloudy_heat, self.clear_heat)
-
-    @property
-    def gas(self) -> Array:
-        """Molecules of the gas."""
-        return self.air + self.vapour
-
     def seen(self, *, density: bool = False) -> Array:
         """Return how far a unit of x shifts the gas from the adiabat, as a share of T.
 
         The adiabat is taken at the pressure that the gas has after the shift.
         """
         gone = np.array([1.0, 0.0]) / self.gas[:, None]
-        slope = (self.density_slope if density else self.slope)[:, None]
-        return np.asarray(self.warms - density * gone - slope * (self.warms - gone))
+        # the density temperature depends on the vapour, too
+        slope = self.slope + self.vapour_slope / self.gas if density else self.slope
+        return np.asarray(self.warms - density * gone - slope[:, None] * (self.warms - gone))
 
     @property
     def behind(self) -> Array:
@@ -209,24 +201,6 @@ class Cloud:
         """Return by how much molecules in clusters warm the parcel, as a share of T or of the density temperature."""
         latent = self.latent - (3.5 if density else 0.0)  # they are missing among the light molecules of the gas
         return latent * self.clustered / (3.5 * self.all_molecules)
-
-    @property
-    def density_slope(self) -> Array:
-        """The slope d ln T / d ln p of the adiabat for the density temperature, which depends on the vapour, too."""
-        return np.asarray(self.slope + self.vapour_slope / self.gas)
-
-    @property
-    def vapour_slope(self) -> Array:
-        """Derivative of the number of molecules of vapour by ln p along the adiabat: zero in clear air."""
-        share = self.vapour / self.air
-        along = self.vapour * (1.0 + share) * (self.latent * self.slope - 1.0)
-        return np.where(self.liquid > 0.0, along, 0.0)
-
-    @property
-    def latent(self) -> Array:
-        """Latent heat of a molecule, in kT."""
-        excess = law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY
-        return np.asarray(law.BINDING_TEMPERATURE / self.temperature - excess)
 
     @property
     def change(self) -> Array:

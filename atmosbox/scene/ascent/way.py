@@ -131,9 +131,8 @@ class MoistAscent:
     @property
     def keeps(self) -> int:
         """Number of molecules of liquid that the cloud holds before it rains; 0 if it does not rain."""
-        if math.isinf(self.most_liquid):
-            return 0
-        return round(self.most_liquid / law.WATER_MASS_RATIO * (self.molecules - self.vapour))
+        air = self.molecules - self.vapour
+        return round(self.most_liquid / law.WATER_MASS_RATIO * air) if self.rains else 0
 
     @property
     def rains(self) -> bool:
@@ -189,12 +188,8 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
     give top_pressure="300hPa".
     """
     if top_pressure > 0.98 * ground_pressure:
-        raise SettingError(
-            "top_pressure",
-            f"{top_pressure:g} hPa",
-            f"is not below {ground}, {ground_pressure:g} hPa",
-            Setting("top_pressure", f"{0.3 * ground_pressure:.0f}hPa"),
-        )
+        problem, lower = f"is not below {ground}, {ground_pressure:g} hPa", f"{0.3 * ground_pressure:.0f}hPa"
+        raise SettingError("top_pressure", f"{top_pressure:g} hPa", problem, Setting("top_pressure", lower))
 
 
 def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
@@ -209,10 +204,6 @@ def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     so the air would be supersaturated: give dewpoint="25degC" for saturated air.
     """
     if dewpoint > temperature:
-        raise SettingError(
-            "dewpoint",
-            f"{dewpoint:g} degC",
-            f"is above the temperature, {temperature:g} degC, so the air would be supersaturated",
-            Setting("dewpoint", f"{temperature:g}degC"),
-            " for saturated air",
-        )
+        problem = f"is above the temperature, {temperature:g} degC, so the air would be supersaturated"
+        highest = Setting("dewpoint", f"{temperature:g}degC")
+        raise SettingError("dewpoint", f"{dewpoint:g} degC", problem, highest, " for saturated air")

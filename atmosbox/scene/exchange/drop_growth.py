@@ -65,18 +65,13 @@ class DropGrowth:
     width: float
     tension: float
 
-    @property
-    def _kT(self) -> float:
-        return BOLTZMANN * self.box.temperature
-
     def radius(self, number: ArrayLike, kind: DropKind) -> Array:
         """Return the real radius of a drop of ``number`` molecules [m]."""
         return law.drop_radius(number, law.WATER_VOLUME, kind.core)
 
     def area(self, number: ArrayLike, kind: DropKind) -> Array:
         """Return the area on which the centres of molecules hit a drop [m^2]."""
-        area: Array = 4.0 * np.pi * (self.width * self.radius(number, kind) + 0.5 * DRY_AIR.diameter) ** 2
-        return area
+        return np.asarray(4.0 * np.pi * (self.width * self.radius(number, kind) + 0.5 * DRY_AIR.diameter) ** 2)
 
     def over(self, number: ArrayLike, kind: DropKind) -> Array:
         """Return the humidity in balance with a drop, taken at n - 1/2 molecules, halfway between n - 1 and n.
@@ -85,34 +80,29 @@ class DropGrowth:
         """
         n = np.asarray(number, np.float64)
         half = np.maximum(n - 0.5, 0.0)
-        surface = law.kelvin_radius(self.tension, law.WATER_VOLUME, self._kT) / self.radius(half, kind)
+        curved = law.kelvin_radius(self.tension, law.WATER_VOLUME, BOLTZMANN * self.box.temperature)
+        surface = curved / self.radius(half, kind)
         reach = 1.0 + 0.5 * DRY_AIR.diameter / self.width / self.radius(n, kind)
         volume = law.WATER_VOLUME * self.width**3 * reach**2
         room = (self.box.side * self.box.scale.length) ** 3
         activity = n / (n + kind.particles) if kind.particles else np.minimum(n, 1.0)
-        humidity: Array = activity * np.exp(surface + self.box.molecules / room * volume)
-        return humidity
+        return np.asarray(activity * np.exp(surface + self.box.molecules / room * volume))
 
     @functools.cached_property
     def flux(self) -> float:
         """Flux of saturated vapour that hits an area [1/(m^2 s)]."""
         return float(law.hertz_knudsen_flux(self.box.temperature))
 
-    @property
-    def _all(self) -> float:
-        """Number of all molecules of water, in vapour and drops."""
-        return self.box.vapour + self.water * sum(kind.count for kind in self.kinds)
-
     def humidity(self, number: Array) -> Array:
         """Return the relative humidity when each drop of a kind holds ``number : (kind, ...)`` molecules."""
         volume = (self.box.side * self.box.scale.length) ** 3
-        vapour, room = np.full(number.shape[1:], float(self._all)), np.ones(number.shape[1:])
+        water = float(self.box.vapour + self.water * sum(kind.count for kind in self.kinds))
+        vapour, room = np.full(number.shape[1:], water), np.ones(number.shape[1:])
         for n, kind in zip(number, self.kinds, strict=True):
             reach = np.asarray(self.width * self.radius(n, kind) + 0.5 * DRY_AIR.diameter, np.float64)
             room -= 4.0 / 3.0 * np.pi * kind.count / volume * (reach * reach * reach)
             vapour -= kind.count * n
-        share: Array = vapour / (self.box.full * room)
-        return share
+        return np.asarray(vapour / (self.box.full * room))
 
     def rates(self, number: Array, humidity: ArrayLike) -> Array:
         """Return how many molecules a drop of each kind gains per time [1/s], at a relative humidity."""

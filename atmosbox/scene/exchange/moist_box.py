@@ -94,24 +94,17 @@ class MoistBox:
         """Number of molecules of vapour at the start."""
         return vapour_molecules(self.molecules, self.humidity * self.saturated, self.pressure)
 
-    @functools.cached_property
-    def share(self) -> float:
-        """Mean vapour pressure over that of saturation: below 1 if there is hardly enough water to saturate the air."""
-        return self.share_at(self.temperature)
-
     def share_at(self, temperature: float) -> float:
-        """Return `share` for walls of another temperature [K]: there the water may not suffice for saturation."""
+        """Return the mean vapour pressure over that of saturation between walls of a temperature [K].
+
+        It is below 1 if there is hardly enough water to saturate the air.
+        """
         room = (self.side * self.scale.length) ** 3 / self._packing[1]
         full = float(law.saturation_vapor_pressure(temperature)) * room / (BOLTZMANN * temperature)
         return law.isothermal_vapor_number(self.vapour, temperature, room).mean / full
 
-    @property
-    def flux(self) -> float:
-        """Number of molecules that hit the liquid per area and time in equilibrium [1/(m^2 s)]."""
-        return self.flux_at(self.temperature)
-
     def flux_at(self, temperature: float) -> float:
-        """Return `flux` for walls of another temperature [K]."""
+        """Return how many molecules hit the liquid per area and time in equilibrium at a temperature [1/(m^2 s)]."""
         return self.share_at(temperature) * float(law.hertz_knudsen_flux(temperature))
 
     def over_drops(self, liquid: ArrayLike, drops: ArrayLike, ball: float) -> NDArray[np.float64]:
@@ -136,8 +129,7 @@ class MoistBox:
         volume = 4.0 / 3.0 * math.pi * ball**3 * (1.0 + 0.5 / radius) ** 2
         room = self.side**3 - drops * 4.0 / 3.0 * math.pi * (radius + 0.5) ** 3
         gas = self.molecules - liquid
-        share: NDArray[np.float64] = np.exp(gas / room * volume) * (liquid + 1.0) / (liquid + drops)
-        return share
+        return np.asarray(np.exp(gas / room * volume) * (liquid + 1.0) / (liquid + drops))
 
     def memory(self, faces: float) -> float:
         r"""Return the correlation time of the number of molecules of vapour [s].
@@ -159,6 +151,5 @@ def refuse_vapour_alone(settings: Any) -> None:
     most = settings.si.pressure / float(law.saturation_vapor_pressure(settings.si.temperature))
     if settings.si.humidity > most:
         place = f"{settings.pressure:g} hPa and {settings.temperature:g} degC"
-        raise settings.refusal(
-            "humidity", f"needs more than the whole pressure at {place}", at_most=math.floor(100.0 * most)
-        )
+        problem = f"needs more than the whole pressure at {place}"
+        raise settings.refusal("humidity", problem, at_most=math.floor(100.0 * most))

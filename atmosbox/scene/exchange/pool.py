@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,9 +66,6 @@ class AirOverPool:
     pressure: float
     vapour_pressure: float
     ideal: bool = False
-    density: float = field(init=False)
-    sides: NDArray[np.float64] = field(init=False)
-    excess: float = field(init=False)
 
     def __post_init__(self) -> None:
         self.scale = Scale(self.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
@@ -151,8 +148,7 @@ class AirOverPool:
         gas = (AIR_HEAT - 1.0) * self.air + (law.VAPOR_HEAT_CAPACITY - 1.0) * rest.vapor
         noise = 1.0 / gas - 1.0 / all_of_it + rest.variance * (self.latent / all_of_it) ** 2
         lost = (0.5 * change**2 + noise * time / self.closing) / _stiffness(1.0, 2.0 * gas / later)
-        kelvin: float = self.temperature * later / self.heat_capacity * lost
-        return kelvin
+        return float(self.temperature * later / self.heat_capacity * lost)
 
     def walk(self, time: float) -> float:
         r"""Return the standard deviation of that heat from run to run, as temperature [K].

@@ -20,25 +20,6 @@ from atmosbox.scene.instruments.speeds import Speeds
 from atmosbox.scene.instruments.water import Leaving, Water
 
 __all__ = [
-    "LAWS",
-    "MOMENTS",
-    "Air",
-    "Clusters",
-    "Discs",
-    "DropSizes",
-    "Environment",
-    "Flow",
-    "Instrument",
-    "Layers",
-    "Leaving",
-    "Lift",
-    "Mixing",
-    "MoistLift",
-    "Molecules",
-    "Nuclei",
-    "Readings",
-    "Slab",
-    "Speeds",
-    "Water",
-    "wall_laws",
-]
+    "LAWS", "MOMENTS", "Air", "Clusters", "Discs", "DropSizes", "Environment", "Flow", "Instrument", "Layers",
+    "Leaving", "Lift", "Mixing", "MoistLift", "Molecules", "Nuclei", "Readings", "Slab", "Speeds", "Water", "wall_laws",
+]  # fmt: skip

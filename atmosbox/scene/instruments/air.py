@@ -69,20 +69,19 @@ class Air:
         with np.errstate(invalid="ignore", divide="ignore"):
             wall_pressure = np.where(area > 0.0, impulse / (area * lasted), np.nan)
         chosen = slice(None) if self.barometer == "all" else slice(4, 5)
-        row: dict[str, Any] = {
-            "air_temperature": float(np.mean(self._kT)),
-            "air_pressure": float(impulse[chosen].sum() / (area[chosen].sum() * lasted))
-            if area[chosen].any()
-            else math.nan,
-            "wall_pressure": wall_pressure,
-            **parcel.budget(),
-            "gravity": parcel.gravity,
-            "ledger_residual": parcel.ledger(),
-            "collision_count": parcel.contacts,
-            "wall_hit_count": int(parcel.wall_hits.sum()),
-            "wall_temperature": parcel.wall_kT(),
-        }
-        self._rows.append(row)
+        self._rows.append(
+            {
+                "air_temperature": float(np.mean(self._kT)),
+                "air_pressure": float(impulse[chosen].sum() / (area[chosen].sum() * lasted or math.nan)),
+                "wall_pressure": wall_pressure,
+                **parcel.budget(),
+                "gravity": parcel.gravity,
+                "ledger_residual": parcel.ledger(),
+                "collision_count": parcel.contacts,
+                "wall_hit_count": int(parcel.wall_hits.sum()),
+                "wall_temperature": parcel.wall_kT(),
+            }
+        )
         self._kT = []
         self._impulse = parcel.wall_impulse
         self._time = parcel.time
@@ -90,12 +89,10 @@ class Air:
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series; see `Instrument`."""
         units = {
-            "air_temperature": scale.temperature,
-            "air_pressure": scale.pressure,
-            "wall_pressure": scale.pressure,
-            **dict.fromkeys([*STORES, *GIVEN], scale.total_energy),
+            **dict.fromkeys(("air_temperature", "wall_temperature"), scale.temperature),
+            **dict.fromkeys(("air_pressure", "wall_pressure"), scale.pressure),
+            **dict.fromkeys((*STORES, *GIVEN), scale.total_energy),
             "gravity": scale.acceleration,
-            "wall_temperature": scale.temperature,
         }
         found = series(self._rows, units)
         for name in {*STORES, *GIVEN} - _ALWAYS:

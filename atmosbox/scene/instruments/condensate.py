@@ -19,20 +19,9 @@ CROWDED = 5
 def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:
     """Return the drop of each molecule, 0 for the largest, and -1 for a molecule of the vapour.
 
-    Molecules in `CROWDED` wells or more are liquid; two of them in each other's well belong to the same drop. A
-    molecule at the surface, in the well of one of them, belongs to that drop as well.
-
-    Parameters
-    ----------
-    pairs : (pair, 2)
-        Pairs of molecules that are in each other's well.
-    number
-        Number of molecules.
-
-    Returns
-    -------
-    (molecule,) ndarray
-        Number of the drop of each molecule.
+    ``pairs : (pair, 2)`` are the molecules that are in each other's well. Molecules in `CROWDED` wells or more are
+    liquid; two of them in each other's well belong to the same drop. A molecule at the surface, in the well of one of
+    them, belongs to that drop as well.
 
     Examples
     --------

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox import theory as law
 from atmosbox.engine import Snapshot
-from atmosbox.scene.instruments.instrument import Readings, series
+from atmosbox.scene.instruments.instrument import Readings, padded, series
 from atmosbox.scene.instruments.water import gas_kT, vapour_pressure
 from atmosbox.scene.units import Scale
 
@@ -62,9 +62,8 @@ class Nuclei:
         self.width = width
         self.radius = np.asarray(radius, np.float64)
         self._looks: list[tuple[float, float]] = []
-        self._humid: list[tuple[float, float]] = []
         self._held: list[np.ndarray] = []
-        self._mean: list[list[float]] = []
+        self._rows: list[tuple[float, ...]] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Measure the vapour pressure."""
@@ -77,27 +76,21 @@ class Nuclei:
         _, radius, held = parcel.drops()
         salted = parcel.dissolved > 0.0
         self._held.append(held)
-        self._mean.append([float(radius[of].mean()) if of.any() else math.nan for of in (salted, ~salted)])
-        pressure, kT = np.mean(self._looks, axis=0)
-        self._humid.append((float(pressure), float(kT)))
+        mean = (float(radius[of].mean()) if of.any() else math.nan for of in (salted, ~salted))
+        self._rows.append((*np.mean(self._looks, axis=0), *mean))
         self._looks = []
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series; see `Instrument`."""
         if not self._held:
             return Readings()
-        held = np.zeros((len(self._held), len(self._held[0])), np.int64)
-        for frame, each in enumerate(self._held):
-            held[frame, : len(each)] = each
-        pressure, kT = np.array(self._humid).T
-        salted, pure = np.array(self._mean).T * scale.length / self.width
+        pressure, kT, salted, pure = np.array(self._rows).T
         found = Readings(
             radius=self.radius,
-            drop_molecule_count=held,
+            drop_molecule_count=padded(self._held, 0),
             saturation_ratio=pressure * scale.pressure / law.saturation_vapor_pressure(kT * scale.temperature),
         )
-        if np.isfinite(salted).any():
-            found["salted_drop_radius"] = salted
-        if np.isfinite(pure).any():
-            found["pure_drop_radius"] = pure
+        for name, radius in (("salted_drop_radius", salted), ("pure_drop_radius", pure)):
+            if np.isfinite(radius).any():
+                found[name] = radius * scale.length / self.width
         return found

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine import Parcel, Snapshot
-from atmosbox.scene.instruments.instrument import Readings, series
+from atmosbox.scene.instruments.instrument import Readings, bins, series
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
@@ -94,8 +94,7 @@ class Flow:
 
     def layers(self) -> Array:
         """Return the number, energy of disordered motion and degrees of freedom in the last sample, layer by layer."""
-        layers: Array = self._cells[[0, 3, 4]].reshape(3, *self.shape).sum(axis=2)
-        return layers
+        return np.asarray(self._cells[[0, 3, 4]].reshape(3, *self.shape).sum(axis=2))
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the fields of a frame, and tag the molecules near the floor when it is time."""
@@ -110,10 +109,9 @@ class Flow:
                 packing = law.packing_fraction_discs(density, float(parcel.diameter[0]))
                 factor = law.compressibility_factor_discs(np.minimum(packing, 0.9))
             self._fields.append(np.stack([kT, density, density * kT * factor, along / number, up / number]))
-        height = (np.arange(rows) + 0.5) / rows
-        inside = (height > CORE[0]) & (height < CORE[1])
-        warmth, free_rows = (row.reshape(rows, columns).sum(axis=1) for row in (energy, freedom))
-        with np.errstate(invalid="ignore", divide="ignore"):
+            height = (np.arange(rows) + 0.5) / rows
+            inside = (height > CORE[0]) & (height < CORE[1])
+            warmth, free_rows = (row.reshape(rows, columns).sum(axis=1) for row in (energy, freedom))
             profile = 2.0 * warmth / free_rows
             core = height[inside] - height[inside].mean()
             lapse = -float(core @ profile[inside]) / float(core @ core) / float(parcel.length[2])
@@ -144,18 +142,10 @@ class Flow:
         rows, columns = self.shape
         edges = np.linspace(0.0, float(self._sides[0]), columns + 1) * scale.length
         speed = scale.velocity
-        units = {
-            "wind_speed": speed,
-            "roll_amplitude": speed,
-            "roll_speed": speed,
-            "core_lapse_rate": scale.temperature / scale.length,
-        }
-        found = Readings(
-            series(self._rows, units),
-            mode=_half_waves(periodic=self._periodic),
-            distance=0.5 * (edges[1:] + edges[:-1]),
-            distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),
-        )
+        units = dict.fromkeys(("wind_speed", "roll_amplitude", "roll_speed"), speed)
+        units["core_lapse_rate"] = scale.temperature / scale.length
+        found = Readings(series(self._rows, units), mode=_half_waves(periodic=self._periodic))
+        found |= bins("distance", edges)
         names = {
             "cell_temperature": scale.temperature,
             "cell_number_density": scale.number_density,
@@ -179,11 +169,9 @@ class Flow:
 
 @functools.cache
 def modes_of_flow(rows: int, columns: int, *, periodic: bool) -> tuple[Array, Array]:
-    """Return the modes of the upward wind, by height and across the box: cosines, and sines if it is periodic.
+    """Return the modes of the upward wind, by height : (row,), and across the box : (1 or 2, mode, column).
 
-    Returns
-    -------
-    (row,), (1 or 2, mode, column)
+    Across it they are cosines, and sines if it is periodic.
 
     Examples
     --------

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.engine.core.measure import layer_sample
 from atmosbox.scene.instruments.flow import Flow
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, bins
 from atmosbox.scene.statistics import average_beside, block_average
 from atmosbox.scene.units import Scale
 
@@ -41,14 +41,9 @@ class Layers:
     """
 
     def __init__(
-        self,
-        number: int,
-        memory: float = 0.0,
-        *,
-        flow: Flow | None = None,
-        gas: str = "",
+        self, number: int, memory: float = 0.0, *, flow: Flow | None = None, gas: str = "",
         which: NDArray[np.bool_] | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.number = number
         self.columns = 1 if flow is None else flow.shape[1]
         self._flow = flow
@@ -76,16 +71,14 @@ class Layers:
         measured: Any = parcel
         if self._which is not None:
             measured = SimpleNamespace(length=parcel.length, planar=parcel.planar, mass=parcel.mass[self._which])
-            snapshot = snapshot._replace(
-                position=snapshot.position[self._which], velocity=snapshot.velocity[self._which]
-            )
+            position, velocity = snapshot.position[self._which], snapshot.velocity[self._which]
+            snapshot = snapshot._replace(position=position, velocity=velocity)
         self._sum += np.stack(layer_sample(measured, snapshot, self.number))
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Finish the sums of a frame."""
-        lasted = parcel.time - self._time
-        self._lasted = lasted
-        rate = (parcel.virial - self._virial) / lasted
+        self._lasted = parcel.time - self._time
+        rate = (parcel.virial - self._virial) / self._lasted
         self._energy.append(sum(parcel.energy()))
         self._frames.append(np.stack([*(self._sum / max(self._looks, 1)), rate]))
         self._sum = np.zeros((3, self.number))
@@ -104,7 +97,7 @@ class Layers:
         """
         frames = np.array(self._frames[settle:])
         edges = np.linspace(0.0, self._height, self.number + 1) * scale.length
-        out = Readings(height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
+        out = bins("height", edges)
         if len(frames) < 2:
             return out
         number, energy, freedom, rate = np.moveaxis(frames, 1, 0)

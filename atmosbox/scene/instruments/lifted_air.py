@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import FollowPressure, Parcel, Snapshot
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Instrument, Readings
 from atmosbox.scene.instruments.water import gas_kT
 from atmosbox.scene.units import Scale
 
@@ -38,7 +38,43 @@ class Environment:
     adiabat: Callable[[float], float] = lambda _: math.nan
 
 
-class Lift:
+class _Rising(Instrument):
+    """What parcels of dry and of moist air have in common: the size of the box, and the environment."""
+
+    def __init__(self, driver: FollowPressure, environment: Environment, scatter: Callable[[Array], Array]) -> None:
+        self._driver = driver
+        self.environment = environment
+        self.scatter = scatter
+        self._rows: list[tuple[float, ...]] = []
+
+    def _measure(self, parcel: Parcel, *more: float) -> None:
+        """Read the box at the end of a frame."""
+        self._rows.append((parcel.time, parcel.volume, parcel.ceiling, parcel.piston_velocity, *more))
+
+    def _readings(
+        self, scale: Scale, time: Array, temperature: Array, pressure: Array, adiabat: Array, heat_capacity: float
+    ) -> Readings:
+        """Return the series of a parcel [K, Pa] and of its environment at the same moments [reduced time]."""
+        volume, ceiling, velocity = np.array(self._rows).T[1:4]
+        around = self.environment
+        seconds = np.array([self._driver.course.moment(t) for t in time]) * scale.time
+        outside = np.array([around.pressure(t) for t in seconds])
+        return Readings(
+            parcel_temperature=temperature,
+            parcel_temperature_se=temperature * self.scatter(outside),
+            parcel_pressure=pressure,
+            parcel_potential_temperature=temperature * (REFERENCE_PRESSURE / pressure) ** (1.0 / heat_capacity),
+            parcel_volume=volume * scale.length**3 * scale.weight,
+            parcel_height=np.array([around.height(t) for t in seconds]),
+            environment_temperature=np.array([around.temperature(t) for t in seconds]),
+            environment_pressure=outside,
+            adiabat_temperature=adiabat,
+            piston_height=ceiling * scale.length,
+            piston_velocity=velocity * scale.velocity,
+        )
+
+
+class Lift(_Rising):
     """A parcel on its ascent: temperature and pressure of parcel and environment against height.
 
     The temperature is that of the whole energy of the parcel, which does not fluctuate in a box at rest. What scatters
@@ -61,63 +97,29 @@ class Lift:
     """
 
     def __init__(
-        self,
-        driver: FollowPressure,
-        environment: Environment,
+        self, driver: FollowPressure, environment: Environment,
         scatter: Callable[[Array], Array] = lambda outside: np.full(len(outside), math.nan),
-    ) -> None:
-        self._driver = driver
-        self.environment = environment
-        self._scatter = scatter
-        self._rows: list[tuple[float, ...]] = []
-        self._freedom = 5.0
-
-    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Need no sample of single molecules."""
+    ) -> None:  # fmt: skip
+        super().__init__(driver, environment, scatter)
+        self._heat_capacity = 3.5
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the state of the parcel at the end of a frame."""
-        self._freedom = parcel.degrees_of_freedom
-        kT = 2.0 * parcel.internal_energy() / (self._freedom * parcel.number)
-        self._rows.append(
-            (
-                parcel.time,
-                kT,
-                self._driver.pressure(parcel),
-                parcel.volume,
-                parcel.ceiling,
-                parcel.piston_velocity,
-            )
-        )
+        freedom = parcel.degrees_of_freedom
+        self._heat_capacity = 0.5 * freedom + 1.0
+        self._measure(parcel, 2.0 * parcel.internal_energy() / (freedom * parcel.number), self._driver.pressure(parcel))
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series of parcel and environment."""
         if not self._rows:
             return Readings()
-        time, kT, pressure, volume, ceiling, velocity = np.array(self._rows).T
-        heat_capacity = 0.5 * self._freedom + 1.0
-        seconds = np.array([self._driver.course.moment(t) for t in time]) * scale.time
-        parcel_temperature = kT * scale.temperature
-        parcel_pressure = pressure * scale.pressure
-        surroundings = self.environment
-        outside = np.array([surroundings.pressure(t) for t in seconds])
-        return Readings(
-            parcel_temperature=parcel_temperature,
-            parcel_temperature_se=parcel_temperature * self._scatter(outside),
-            parcel_pressure=parcel_pressure,
-            parcel_potential_temperature=parcel_temperature
-            * (REFERENCE_PRESSURE / parcel_pressure) ** (1.0 / heat_capacity),
-            parcel_volume=volume * scale.length**3 * scale.weight,
-            parcel_height=np.array([surroundings.height(t) for t in seconds]),
-            environment_temperature=np.array([surroundings.temperature(t) for t in seconds]),
-            environment_pressure=outside,
-            adiabat_temperature=np.array([surroundings.adiabat(p) for p in parcel_pressure]),
-            piston_height=ceiling * scale.length,
-            piston_velocity=velocity * scale.velocity,
-        )
+        time, _, _, _, kT, p = np.array(self._rows).T
+        pressure = p * scale.pressure
+        adiabat = np.array([self.environment.adiabat(each) for each in pressure])
+        return self._readings(scale, time, kT * scale.temperature, pressure, adiabat, self._heat_capacity)
 
 
-class MoistLift:
+class MoistLift(_Rising):
     r"""A parcel of moist air on its ascent: temperature and pressure of parcel and environment against height.
 
     Temperature and pressure are means over the samples within a frame; for the pressure, of its logarithm. The number
@@ -139,19 +141,13 @@ class MoistLift:
     """
 
     def __init__(
-        self,
-        driver: FollowPressure,
-        environment: Environment,
-        curve: Callable[[Array], Array],
+        self, driver: FollowPressure, environment: Environment, curve: Callable[[Array], Array],
         scatter: Callable[[Array], Array],
-    ) -> None:
-        self._driver = driver
-        self.environment = environment
+    ) -> None:  # fmt: skip
+        super().__init__(driver, environment, scatter)
         self.curve = curve
-        self.scatter = scatter
         self._looks: list[tuple[float, float]] = []
         self._seen: list[list[tuple[float, float]]] = []
-        self._rows: list[tuple[float, ...]] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read temperature and pressure."""
@@ -161,32 +157,15 @@ class MoistLift:
         """Read the state of the box at the end of a frame."""
         self._seen.append(self._looks)
         self._looks = []
-        self._rows.append((parcel.time, parcel.volume, parcel.ceiling, parcel.piston_velocity))
+        self._measure(parcel)
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series of parcel and environment; see `Instrument`."""
         if not self._rows:
             return Readings()
-        time, volume, ceiling, velocity = np.array(self._rows).T
+        time = np.array(self._rows)[:, 0]
         kT, p = np.moveaxis(np.array(self._seen), 2, 0)
         temperature, pressure = kT * scale.temperature, p * scale.pressure
-        expected = self.curve(pressure.ravel()).reshape(pressure.shape)
-        parcel_temperature = temperature.mean(axis=1)
-        parcel_pressure = np.exp(np.log(pressure).mean(axis=1))
-        around = self.environment
-        middle = time - 0.5 * np.diff(time, prepend=0.0)
-        middle = np.array([self._driver.course.moment(t) for t in middle]) * scale.time
-        outside = np.array([around.pressure(t) for t in middle])
-        return Readings(
-            parcel_temperature=parcel_temperature,
-            parcel_temperature_se=self.scatter(outside) * parcel_temperature,
-            parcel_pressure=parcel_pressure,
-            parcel_potential_temperature=parcel_temperature * (REFERENCE_PRESSURE / parcel_pressure) ** (2.0 / 7.0),
-            parcel_volume=volume * scale.length**3 * scale.weight,
-            parcel_height=np.array([around.height(t) for t in middle]),
-            environment_temperature=np.array([around.temperature(t) for t in middle]),
-            environment_pressure=outside,
-            adiabat_temperature=expected.mean(axis=1),
-            piston_height=ceiling * scale.length,
-            piston_velocity=velocity * scale.velocity,
-        )
+        adiabat = self.curve(pressure.ravel()).reshape(pressure.shape).mean(axis=1)
+        middle, mean = time - 0.5 * np.diff(time, prepend=0.0), np.exp(np.log(pressure).mean(axis=1))
+        return self._readings(scale, middle, temperature.mean(axis=1), mean, adiabat, 3.5)

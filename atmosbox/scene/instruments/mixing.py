@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine import Parcel, Snapshot
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Instrument, Readings, bins
 from atmosbox.scene.units import Scale
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ PRIOR = 2.0
 """Number of molecules, divided as theory expects, that are added to those of a bin for the error of its share."""
 
 
-class Mixing:
+class Mixing(Instrument):
     r"""The slowest mode of the difference of two gases, the entropy of mixing, and both profiles at some moments.
 
     Parameters
@@ -52,13 +52,9 @@ class Mixing:
         self.right = np.asarray(right, np.bool_)
         self.moments = moments
         self.bins = bins
-        self._times: list[float] = []
         self._rows: list[tuple[float, float]] = []
         self._shares: dict[str, tuple[float, Array, Array]] = {}
         self._length = 1.0
-
-    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Need no sample between frames."""
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count both gases across the box."""
@@ -69,7 +65,6 @@ class Mixing:
         amplitude = float(np.mean(sign * np.cos(math.pi * across))) * math.pi / 2.0
         place = np.clip((across * self.bins).astype(int), 0, self.bins - 1)
         left, right = (np.bincount(place[chosen], minlength=self.bins) for chosen in (~self.right, self.right))
-        self._times.append(parcel.time)
         self._rows.append((amplitude, entropy_of_counts(left, right)))
         for name, moment in self.moments.items():
             off = abs(parcel.time - moment)
@@ -82,12 +77,8 @@ class Mixing:
             return Readings()
         amplitude, entropy = np.array(self._rows).T
         edges = np.linspace(0.0, self._length, self.bins + 1) * scale.length
-        found = Readings(
-            mixing_amplitude=amplitude,
-            mixing_entropy=entropy / math.log(2.0),
-            distance=0.5 * (edges[1:] + edges[:-1]),
-            distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),
-        )
+        found = Readings(mixing_amplitude=amplitude, mixing_entropy=entropy / math.log(2.0))
+        found |= bins("distance", edges)
         for name, (_, left, both) in self._shares.items():
             expected, scatter = expected_share(self.bins, MOMENTS[name])
             found[f"left_gas_share_{name}"] = left / np.where(both > 0.0, both, math.nan)
@@ -101,30 +92,12 @@ class Mixing:
 
 @functools.cache
 def expected_share(bins: int, passed: float) -> tuple[Array, Array]:
-    """Return the share of the left gas after some mixing times, and its variance over that of independent draws.
-
-    Parameters
-    ----------
-    bins
-        Number of equal parts of the box.
-    passed
-        Time since the start [mixing times].
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Share and ratio of variances [1], both (bin,).
-    """
+    """Return the share of the left gas after some mixing times, and its variance over that of independent draws."""
     return law.mixed_share(np.linspace(0.0, 1.0, bins + 1), passed), law.mixed_share_scatter(bins, passed)
 
 
 def entropy_of_counts(left: Counts, right: Counts) -> float:
     """Return the entropy of mixing per molecule, in units of k, of two gases counted in bins; see `Mixing`.
-
-    Parameters
-    ----------
-    left, right : (bin,)
-        Number of molecules of each gas in each bin.
 
     Examples
     --------

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import Snapshot
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Instrument, Readings, padded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import DRY_AIR, WATER
 
@@ -43,7 +43,7 @@ def wall_laws(parcel: Any) -> tuple[str, ...]:
     return tuple(LAWS[int(law)] for law in parcel.laws)
 
 
-class Molecules:
+class Molecules(Instrument):
     """Positions and velocities of all molecules and the box they are in, for ``--save-molecules``.
 
     A molecule in the liquid has neither position nor velocity; both are NaN. Where there is water, the readings say
@@ -68,18 +68,12 @@ class Molecules:
         self._laws: tuple[str, ...] = ()
         self._moist = False
 
-    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Need no sample between frames."""
-
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Store all molecules in single precision, the drops and the size of the box."""
         present = parcel.present
-        position = np.full((present.size, 3), np.nan, np.float32)
-        velocity = np.full((present.size, 3), np.nan, np.float32)
-        position[present] = snapshot.position
-        velocity[present] = snapshot.velocity
-        self._position.append(position)
-        self._velocity.append(velocity)
+        for kept, each in ((self._position, snapshot.position), (self._velocity, snapshot.velocity)):
+            kept.append(np.full((present.size, 3), np.nan, np.float32))
+            kept[-1][present] = each
         self._sides.append(np.array(parcel.length))
         if hasattr(parcel, "neighbours"):
             self._neighbours.append(parcel.neighbours())
@@ -118,10 +112,6 @@ class Molecules:
         if self._moist:
             found["species"] = water.astype(np.int8)
         if self._drops:
-            most = max(len(radius) for _, radius in self._drops)
-            place = np.full((len(self._drops), most, 3), np.nan)
-            wide = np.full((len(self._drops), most), np.nan)
-            for frame, (centre, radius) in enumerate(self._drops):
-                place[frame, : len(radius)], wide[frame, : len(radius)] = centre, radius
-            found |= Readings(drop_position=place * scale.length, drop_radius=wide * scale.length)
+            for name, each in zip(("drop_position", "drop_radius"), zip(*self._drops, strict=True), strict=True):
+                found[name] = padded(each, np.nan) * scale.length
         return found

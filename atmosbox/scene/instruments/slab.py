@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import Snapshot
 from atmosbox.engine.core.measure import temperature
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, bins
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
@@ -23,20 +23,9 @@ _INSIDE, _OUTSIDE = 3.0, 4.0
 
 
 def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Tell which layers are well inside the liquid, and which are well outside.
+    """Tell which layers are well inside the liquid, and which well outside; none if they cannot be told apart.
 
-    Parameters
-    ----------
-    height, density : (layer,)
-        Middle and density of layers of equal thickness [diameter, diameter^-3]; the liquid is in the middle of a
-        periodic box, else on the floor.
-    periodic
-        Whether the box is periodic.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Both (layer,); all False if liquid and vapour cannot be told apart.
+    The liquid is in the middle of a periodic box, else on the floor; lengths are in diameters.
 
     Examples
     --------
@@ -80,8 +69,7 @@ class Slab:
     def __init__(self, molecules: int) -> None:
         self._molecules = molecules
         self._kT: list[float] = []
-        self._sum = np.zeros((2, 0))
-        self._looks = 0
+        self._looks: list[Array] = []
         self._frames: list[Array] = []
         self._series: list[tuple[float, float]] = []
         self._stress = np.zeros(3)
@@ -96,8 +84,6 @@ class Slab:
         self._area = float(parcel.length[0] * parcel.length[1])
         self._periodic = bool(parcel.periodic[2])
         layers = max(round(self._height / _BIN), 8)
-        if not self._sum.size:
-            self._sum = np.zeros((2, layers))
         n = self._molecules
         wells = parcel.neighbours()[:n].astype(np.float64)
         z = snapshot.position[:n, 2]
@@ -106,22 +92,17 @@ class Slab:
             middle = math.atan2(float(wells @ np.sin(angle)), float(wells @ np.cos(angle))) * self._height / 2.0 / np.pi
             z = np.mod(z - middle + 0.5 * self._height, self._height)
         layer = np.clip((z / self._height * layers).astype(np.int64), 0, layers - 1)
-        self._sum[0] += np.bincount(layer, minlength=layers)
-        self._sum[1] += np.bincount(layer, wells, minlength=layers)
-        self._looks += 1
+        self._looks.append(np.stack([np.bincount(layer, minlength=layers), np.bincount(layer, wells, layers)]))
         self._kT.append(temperature(parcel, snapshot))
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Finish the sums of a frame."""
         lasted = parcel.time - self._time
         stress = (parcel.stress - self._stress) / lasted
-        volume = float(parcel.volume)
-        pressure = (parcel.number * float(np.mean(self._kT)) + stress[2]) / volume
+        pressure = (parcel.number * float(np.mean(self._kT)) + stress[2]) / float(parcel.volume)
         self._series.append((pressure, (stress[2] - 0.5 * (stress[0] + stress[1])) / (2.0 * self._area)))
-        self._frames.append(self._sum / self._looks)
-        self._sum = np.zeros_like(self._sum)
-        self._looks = 0
-        self._kT = []
+        self._frames.append(np.mean(self._looks, axis=0))
+        self._looks, self._kT = [], []
         self._stress = parcel.stress
         self._time = parcel.time
 
@@ -132,24 +113,21 @@ class Slab:
             return Readings()
         layers = frames.shape[2]
         edges = np.linspace(0.0, self._height, layers + 1)
-        height = 0.5 * (edges[1:] + edges[:-1])
+        axis = bins("height", edges)
         volume = self._area * self._height / layers
         late = frames[settle:]
         # the surfaces move and the number in the vapour stays correlated over many frames: ten long blocks give the
         # error
         blocks = min(_BLOCKS, len(late) // 2)
         density, error = (each / volume for each in overlapping_average(late[:, 0], blocks))
-        found = Readings(
-            height=height * scale.length,
-            height_bnds=np.stack([edges[:-1], edges[1:]], axis=1) * scale.length,
-            number_density=density * scale.number_density,
-            number_density_se=error * scale.number_density,
-        )
+        found = Readings({name: each * scale.length for name, each in axis.items()})
+        found |= {"number_density": density * scale.number_density, "number_density_se": error * scale.number_density}
         pressure, tension = np.array(self._series).T
         found["normal_pressure"] = pressure * scale.pressure
         if self._periodic:
             found["surface_tension"] = tension * scale.pressure * scale.length
-        for name, part in zip(("liquid", "vapor"), inner_and_outer(height, density, self._periodic), strict=True):
+        parts = inner_and_outer(axis["height"], density, self._periodic)
+        for name, part in zip(("liquid", "vapor"), parts, strict=True):
             if not part.any():
                 continue
             number, wells = frames[:, :, part].sum(axis=2).T

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.engine.core.measure import speed_counts
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Readings, bins
 from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import Scale
 
@@ -49,8 +49,7 @@ class Speeds:
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the mean speeds, and the histogram with its standard errors."""
-        edges = self.edges * scale.velocity
-        out = Readings(speed=0.5 * (edges[1:] + edges[:-1]), speed_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
+        out = bins("speed", self.edges * scale.velocity)
         out["mean_molecular_speed"] = np.array(self._mean) * scale.velocity
         frames = np.array(self._frames[settle:])
         if len(frames) >= 2:

@@ -9,7 +9,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine import Parcel, Snapshot
-from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.instrument import Instrument, Readings, bins
 from atmosbox.scene.units import Scale
 
 _CRITICAL = 647.0  # K; there is no saturation above it
@@ -28,15 +28,7 @@ def gas_kT(parcel: Parcel) -> float:
 
 
 def vapour_pressure(parcel: Any, kT: float) -> float:
-    """Return the partial pressure of the vapour, its share of n k T Z [energy/length^3].
-
-    Parameters
-    ----------
-    parcel
-        A box with vapour in it.
-    kT
-        Temperature of the gas [energy].
-    """
+    """Return the partial pressure of the vapour at a temperature of the gas, its share of n k T Z [energy/length^3]."""
     density = parcel.open_density
     if not density > 0.0:
         return 0.0
@@ -44,8 +36,7 @@ def vapour_pressure(parcel: Any, kT: float) -> float:
     if not parcel.ideal:
         filled = float(law.packing_fraction(parcel.number / parcel.volume, float(parcel.diameter[0])))
         factor = float(law.compressibility_factor(filled))
-    pressure: float = parcel.vapour / parcel.number * density * kT * factor
-    return pressure
+    return float(parcel.vapour / parcel.number * density * kT * factor)
 
 
 class Water:
@@ -63,7 +54,6 @@ class Water:
         self._rains = rains
         self._looks: list[tuple[float, ...]] = []
         self._rows: list[tuple[float, ...]] = []
-        self._counts: list[tuple[int, int, int]] = []
         self._last = (0.0, 0, 0)
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
@@ -78,8 +68,7 @@ class Water:
         time, condensed, evaporated = self._last
         lasted = parcel.time - time
         rates = (parcel.condensed - condensed) / lasted, (parcel.evaporated - evaporated) / lasted
-        self._rows.append((*np.mean(self._looks, axis=0), *rates))
-        self._counts.append((parcel.vapour, parcel.liquid, parcel.rained))
+        self._rows.append((*np.mean(self._looks, axis=0), *rates, parcel.vapour, parcel.liquid, parcel.rained))
         self._last = (parcel.time, parcel.condensed, parcel.evaporated)
         self._looks = []
 
@@ -87,8 +76,8 @@ class Water:
         """Return the series; see `Instrument`."""
         if not self._rows:
             return Readings()
-        kT, pressure, liquid_kT, vapour, liquid, rain, condensing, evaporating = np.array(self._rows).T
-        counts = np.array(self._counts)
+        kT, pressure, liquid_kT, vapour, liquid, rain, condensing, evaporating, *counts = np.array(self._rows).T
+        count = np.array(counts, np.int64)
         saturation = law.saturation_vapor_pressure(np.minimum(kT * scale.temperature, _CRITICAL))
         e = pressure * scale.pressure
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -103,16 +92,16 @@ class Water:
             evaporation_rate=evaporating * scale.weight / scale.time,
             humidity_mixing_ratio=vapour * law.WATER_MASS_RATIO,
             cloud_liquid_water_mixing_ratio=liquid * law.WATER_MASS_RATIO,
-            vapor_molecule_count=counts[:, 0],
-            liquid_molecule_count=counts[:, 1],
-            rained_molecule_count=counts[:, 2],
+            vapor_molecule_count=count[0],
+            liquid_molecule_count=count[1],
+            rained_molecule_count=count[2],
         )
         if self._rains:
             found["rain_mixing_ratio"] = rain * law.WATER_MASS_RATIO
         return found
 
 
-class Leaving:
+class Leaving(Instrument):
     """Histogram of the energies of the molecules that evaporate, counted from a molecule at rest in the liquid.
 
     Where the pool has been covered by hand, also which share of it was open at the end of each frame.
@@ -137,9 +126,6 @@ class Leaving:
         self._counts = np.zeros(1)
         self._open: list[float] = []
 
-    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Need no sample of single molecules."""
-
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read the energies of the molecules that have left, and how much of the surface is open."""
         self._open.append(parcel.sticking)
@@ -152,15 +138,10 @@ class Leaving:
         below = np.linspace(0.0, self.binding, max(round(self.binding / width), 1), endpoint=False)
         edges = np.concatenate([below, self.binding + self._edges]) * scale.energy
         counts = np.concatenate([np.zeros(len(below)), self._counts])
-        out = Readings(energy=0.5 * (edges[1:] + edges[:-1]), energy_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
-        number = counts.sum()
-        if number:
-            share, widths = counts / number, np.diff(edges)
-            out["leaving_energy_probability_density"] = share / widths
-            out["leaving_energy_probability_density_se"] = np.sqrt(share * (1.0 - share) / number) / widths
-        else:
-            out["leaving_energy_probability_density"] = np.full(len(counts), np.nan)
-            out["leaving_energy_probability_density_se"] = np.full(len(counts), np.nan)
+        out, number = bins("energy", edges), counts.sum() or math.nan
+        share, widths = counts / number, np.diff(edges)
+        out["leaving_energy_probability_density"] = share / widths
+        out["leaving_energy_probability_density_se"] = np.sqrt(share * (1.0 - share) / number) / widths
         if min(self._open, default=1.0) < 1.0:  # few pools are covered while they run
             out["pool_open_share"] = np.array(self._open)
         return out

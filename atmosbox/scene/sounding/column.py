@@ -30,26 +30,10 @@ class Measure(NamedTuple):
 
 
 class Table(NamedTuple):
-    """The columns of a file as they are written in it.
+    """The columns of a file as they are written in it, with its name in messages, its format, and the ascent's name.
 
-    Parameters
-    ----------
-    file
-        The name of the file in messages.
-    kind
-        The format.
-    name
-        The name of the ascent.
-    values
-        For each quantity its column (level,) in the file's unit, NaN where a value is missing.
-    units
-        For each quantity its unit as written, None if there is none.
-    places
-        The place of each level in the file.
-    head
-        The place where the columns are named.
-    remarks
-        Remarks on what reading has left out so far, one sentence each.
+    Of each quantity there is its column : (level,), NaN where a value is missing, and its unit, None if none is
+    written; ``places`` are those of the levels in the file, ``head`` is where the columns are named.
     """
 
     file: str
@@ -60,6 +44,7 @@ class Table(NamedTuple):
     places: tuple[str, ...]
     head: str
     remarks: tuple[str, ...] = ()
+    """What reading has left out so far, one sentence each."""
 
 
 QUANTITIES: dict[str, Measure] = {
