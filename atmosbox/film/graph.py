@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from atmosbox.plot.atmosphere_picture import ascent_of, draw_atmosphere, draw_ground, draw_way
-from atmosbox.plot.curve import Curve, convert, curve
+from atmosbox.plot.curve import Curve, curve, series
 from atmosbox.plot.draw import MEASURED, Entry, draw_line, draw_steps, from_start
 from atmosbox.plot.layout import Draw
 from atmosbox.plot.run_figure import painter
@@ -59,15 +59,13 @@ class Running:
         data = self.dataset
         bounds = np.append(data["height_bnds"].values[:, 0], data["height_bnds"].values[-1, 1])
         height = data["molecule_position"].transpose("elapsed_time", "molecule", "axis").values[:, :, 2]
-        speed = data["molecule_speed"].transpose("elapsed_time", "molecule").values
-        frames, layers = len(height), len(bounds) - 1
-        count, square = np.zeros((frames, layers)), np.zeros((frames, layers))
-        for frame in range(frames):
-            count[frame] = np.histogram(height[frame], bounds)[0]
-            square[frame] = np.histogram(height[frame], bounds, weights=speed[frame].astype(np.float64) ** 2)[0]
-        so_far = np.arange(1.0, frames + 1.0)[:, None]
-        self.count = np.cumsum(count, axis=0) / so_far
-        self.square = np.cumsum(square, axis=0) / so_far
+        square = data["molecule_speed"].transpose("elapsed_time", "molecule").values.astype(np.float64) ** 2
+        layers = [
+            (np.histogram(h, bounds)[0], np.histogram(h, bounds, weights=s)[0])
+            for h, s in zip(height, square, strict=True)
+        ]
+        so_far = np.arange(1.0, len(layers) + 1.0)[:, None]
+        self.count, self.square = (np.cumsum(each, axis=0) / so_far for each in zip(*layers, strict=True))
 
     def at(self, frame: int) -> xr.Dataset:
         """Return the dataset with the averages up to a frame in place of those of the whole run."""
@@ -139,9 +137,7 @@ class Graph:
         self.lines = [line for line in panel.lines if line.role == "data"]
         self.curves = {line: curve(dataset, panel, line) for line in self.lines if line.y not in running.names}
         in_time = panel.kind == "line" and all(line.x == "elapsed_time" for line in self.lines)
-        time = dataset["elapsed_time"]
-        unit = panel.x_unit if in_time else ""
-        self.time = convert(time.values, str(time.attrs.get("units", "1")), unit, name="elapsed_time")
+        self.time = series(dataset, "elapsed_time", panel.x_unit if in_time else "")
         self.cursor = axes.axvline(self.time[0], color=DARK, linewidth=look.line / 2, zorder=5.0)
         self.cursor.set_visible(in_time)
         # CAPE and CIN are shaded up to the level that the parcel has reached

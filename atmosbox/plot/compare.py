@@ -6,6 +6,7 @@ import math
 import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -138,12 +139,10 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
 
 def _parameters(scene: str) -> dict[str, Parameter]:
     """Return the settings of a scene that comes with atmosbox; none for a user's own scene, whose file is not run."""
-    try:
-        if scene not in scenarios.names():
-            return {}
-        return {parameter.name: parameter for parameter in scenarios.load(scene).Settings.describe()}
-    except AtmosboxError:
-        return {}
+    with suppress(AtmosboxError):
+        if scene in scenarios.names():
+            return {parameter.name: parameter for parameter in scenarios.load(scene).Settings.describe()}
+    return {}
 
 
 def _value(value: object, parameter: Parameter | None) -> str:
@@ -291,7 +290,7 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     """Draw several runs into one figure, with the panels that they share and a label for each run in the legend."""
     look, panels = find(theme), shared_panels(datasets)
     draw = painter(datasets, look, partial(_draw_lines, datasets, labels))
-    return page(panels, look, datasets[0], draw, [], _small(datasets) + explanation(datasets[0], panels), title)
+    return page(panels, look, datasets[0], draw, [], _small(datasets) + explanation(datasets[0], panels), heading=title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
@@ -321,20 +320,18 @@ def _small(datasets: Sequence[xr.Dataset]) -> str:
 
 def _draw_lines(
     datasets: Sequence[xr.Dataset], names: Sequence[str], axes: Axes, panel: Panel, look: Theme
-) -> tuple[list[Entry], int]:
-    """Draw the curves of all runs; return the legend entries and the number of values of the longest curve.
+) -> list[Entry]:
+    """Draw the curves of all runs, and return the legend entries.
 
     Of a measured curve, colour and marker show the run, dashes show the curve. A calculated curve is drawn once if all
     runs have the same, else once for each run in a darker colour; if the scenes of the runs call it differently, as the
     dry and the moist adiabat, each has its own entry.
     """
     entries: list[Entry] = []
-    most = 0
     for role in ROLES:
         lines = [line for line in panel.lines if line.role == role]
         for index, line in enumerate(lines):
             curves = {k: curve(each, panel, line) for k, each in enumerate(datasets) if holds(each, line.variables)}
-            most = max([most, *(each.x.size for each in curves.values())])
             called = {k: _called(datasets[k], panel, line) for k in curves}
             alike, laws = len(set(called.values())) < 2, [*curves.values()]
             if role != "data" and alike and all(_same(laws[0], other, panel) for other in laws[1:]):
@@ -357,7 +354,7 @@ def _draw_lines(
             if role != "data" and curves and alike:
                 grey = Line2D([], [], **line_style(role, look, index) | {"color": DARK})
                 entries.append(((grey,), line.label))
-    return entries, most
+    return entries
 
 
 def _called(dataset: xr.Dataset, panel: Panel, line: Line) -> str:

@@ -102,9 +102,9 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     measured_is_x = panel.measured_across
     axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
     (name, unit), other = axes if measured_is_x else axes[::-1]
-    along = _values(dataset, *other)
-    measured = _values(dataset, name, unit)
-    error = None if line.error is None else _values(dataset, line.error, unit, difference=True)
+    along = series(dataset, *other)
+    measured = series(dataset, name, unit)
+    error = None if line.error is None else series(dataset, line.error, unit, difference=True)
     try:
         along, measured = np.broadcast_arrays(np.atleast_1d(along), measured)
         if error is not None:
@@ -145,7 +145,8 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
     return unit or _unit(read(dataset, first.x if axis == "x" else first.y))
 
 
-def _values(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = False) -> NDArray[np.float64]:
+def series(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = False) -> NDArray[np.float64]:
+    """Return a single number or a list of values of the file in the unit that is shown."""
     variable = read(dataset, name)
     if variable.ndim > 1:
         raise FileError(
