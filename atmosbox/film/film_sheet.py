@@ -140,12 +140,8 @@ class Sheet:
         running = Running(dataset)
         panels = chosen(dataset, panels_of(dataset), running)
         if held is None and not panels:
-            fix = (
-                "run the scene again with ",
-                Option("save_molecules", True),
-                ", and film it without ",
-                Option("graphs"),
-            )
+            again, alone = Option("save_molecules", True), Option("graphs")
+            fix = ("run the scene again with ", again, ", and film it without ", alone)
             raise FileError("The file has no graph that grows with time", *fix)
         # The share of the width that the box has beside its graphs.
         beside = sum(panel.kind in ("profile", "skewt") for panel in panels)

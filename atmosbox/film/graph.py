@@ -60,12 +60,10 @@ class Running:
         bounds = np.append(data["height_bnds"].values[:, 0], data["height_bnds"].values[-1, 1])
         height = data["molecule_position"].transpose("elapsed_time", "molecule", "axis").values[:, :, 2]
         square = data["molecule_speed"].transpose("elapsed_time", "molecule").values.astype(np.float64) ** 2
-        layers = [
-            (np.histogram(h, bounds)[0], np.histogram(h, bounds, weights=s)[0])
-            for h, s in zip(height, square, strict=True)
-        ]
-        so_far = np.arange(1.0, len(layers) + 1.0)[:, None]
-        self.count, self.square = (np.cumsum(each, axis=0) / so_far for each in zip(*layers, strict=True))
+        so_far = np.arange(1.0, len(height) + 1.0)[:, None]
+        count = [np.histogram(each, bounds)[0] for each in height]
+        energy = [np.histogram(each, bounds, weights=held)[0] for each, held in zip(height, square, strict=True)]
+        self.count, self.square = (np.cumsum(each, axis=0) / so_far for each in (count, energy))
 
     def at(self, frame: int) -> xr.Dataset:
         """Return the dataset with the averages up to a frame in place of those of the whole run."""
