@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
@@ -182,10 +181,8 @@ class Graph:
         values = Curve(np.where(past, x, np.nan), np.where(past, y, np.nan), error)
         draw_line(self.axes, self.panel, line, from_start(self.panel, line, values), self.look, index)
         if each:
-            colour = DATA_COLOURS[index % len(DATA_COLOURS)]
-            dot = Line2D(x[[frame]], y[[frame]], marker="o", markersize=1.5 * self.look.marker, zorder=6.0)
-            dot.set(markerfacecolor=colour, markeredgecolor="white")
-            self.axes.add_line(dot)
+            dot: dict[str, Any] = {"mfc": DATA_COLOURS[index % len(DATA_COLOURS)], "mec": "white", "zorder": 6.0}
+            self.axes.plot(x[frame], y[frame], "o", ms=1.5 * self.look.marker, **dot)
 
     def _below(self, frame: int) -> Rectangle:
         """Return the part of the axes below the point that the first curve has reached in a frame."""

@@ -62,8 +62,7 @@ class Ascent(NamedTuple):
     def radius(self) -> Floats:
         """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
         volume = (self.temperature + 273.15) / self.pressure
-        wide: Floats = np.cbrt(volume / volume[0])
-        return wide
+        return np.asarray(np.cbrt(volume / volume[0]))
 
     @property
     def crosses(self) -> bool:

@@ -269,12 +269,10 @@ def _compared(datasets: Sequence[xr.Dataset], name: str) -> Compared:
 
 def _measured(dataset: xr.Dataset, name: str, unit: str) -> Measured:
     def shown(part: str, *, difference: bool = False) -> float:
-        if part not in dataset.variables:
-            return math.nan
-        try:
-            return from_si(float(dataset[part].values), unit, difference=difference)
-        except UnitError:
-            return math.nan
+        with suppress(UnitError):
+            if part in dataset.variables:
+                return from_si(float(dataset[part].values), unit, difference=difference)
+        return math.nan
 
     return Measured(shown(name), shown(f"{name}_se", difference=True), shown(f"{name}_theory"))
 

@@ -209,10 +209,8 @@ def set_limits(axes: Axes, panel: Panel) -> None:
         low, high = axes.dataLim.intervaly  # infinite without a value
         if 0.0 <= low < 0.2 * high:
             axes.set_ylim(bottom=0.0)
-    if panel.x_limits:
-        axes.set_xlim(*panel.x_limits)
-    if panel.y_limits:
-        axes.set_ylim(*panel.y_limits)
+    axes.set_xlim(*panel.x_limits)  # without limits, those of the curves stay
+    axes.set_ylim(*panel.y_limits)
     axes.xaxis.set_inverted(panel.x_invert)
     axes.yaxis.set_inverted(panel.y_invert)
 

@@ -303,10 +303,10 @@ def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
     if len(panels) == 2:
         return [[0], [1]]
     columns: list[list[int]] = []
-    for index, panel in enumerate(panels):
-        paired = bool(columns) and len(columns[-1]) == 1 and panels[columns[-1][0]].kind not in _TALL
-        if paired and panel.kind not in _TALL:
-            columns[-1].append(index)
+    for index in range(len(panels)):
+        column = [*columns[-1], index] if columns else []
+        if len(column) == 2 and all(panels[place].kind not in _TALL for place in column):
+            columns[-1] = column
         else:
             columns.append([index])
     return columns

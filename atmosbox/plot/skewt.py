@@ -148,11 +148,10 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
     """Return the pressures of the levels that a panel marks by their names [hPa]; NaN in the file means not found."""
     found: dict[str, float] = {}
     for name in panel.marks:
-        if name not in dataset.variables or not dataset[name].attrs.get("resolved", True):
-            continue
-        pressure = float(series(dataset, name, panel.y_unit))
-        if pressure > 0.0:
-            found.setdefault(_ABBREVIATIONS.get(name, name.replace("_", " ")), pressure)
+        if name in dataset.variables and dataset[name].attrs.get("resolved", True):
+            pressure = float(series(dataset, name, panel.y_unit))
+            if pressure > 0.0:
+                found.setdefault(_ABBREVIATIONS.get(name, name.replace("_", " ")), pressure)
     return found
 
 

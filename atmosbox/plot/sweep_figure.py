@@ -113,8 +113,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     if not across.numeric:
         with style(look):
             for axes in drawing.axes:
-                axes.set_xticks(across.values, across.words, minor=False)
-                axes.set_xticks([], minor=True)
+                axes.set_xticks(across.values, across.words)
                 axes.set_xlabel(across.name)
     return drawing
 

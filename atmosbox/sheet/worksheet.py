@@ -20,7 +20,7 @@ from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.graph_row import graph_rows, until
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, bare, filled, fixed, measured, spelled, theoretical
-from atmosbox.sheet.text import LANGUAGES, SECTIONS, Change, read, text_of, translated
+from atmosbox.sheet.text import LANGUAGES, SECTIONS, read, text_of, translated
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
@@ -194,12 +194,10 @@ def worksheet(
     path = text_of(first.module) or WORDS
     words = read(path, language)
     path = translated(path, language)
-    alone = _Filling(path, trials(first, ()))
-    changes = [Change(**alone.all(each, f"change {n}")) for n, each in enumerate(words["change"], 1)]
-    runs = trials(first, changes)
+    runs = trials(first, _Filling(path, trials(first, ())).all(words.pop("change"), "change"))
     due = len(runs) if answers else 0 if words["row"] or lab else 1
     if due and path != WORDS:
-        _Filling(path, runs).sheet(words)  # a mistake is refused before time is spent on a run
+        _Filling(path, runs).all(words, "")  # a mistake is refused before time is spent on a run
     runs = (*execute(runs[:due], progress), *runs[due:])
     return _written(path, words, runs, answers, lab, language)
 
@@ -227,15 +225,11 @@ class _Filling:
         # questions and all other texts except answers may not use results of the runs
         self.before = {run.letter: Trial(run.letter, run.title, run.prepared) for run in runs} | scene
 
-    def sheet(self, words: dict[str, Any]) -> dict[str, Any]:
-        """Return the whole text of a sheet, with its sums worked out."""
-        return {key: self.all(value, key) for key, value in words.items() if key != "change"}
-
     def all(self, value: Any, place: str) -> Any:
         """Return an entry with all sums in it worked out; an error message names the place of the entry."""
         match value:
             case dict():
-                return {key: self.all(each, f"{place}, {key}") for key, each in value.items()}
+                return {key: self.all(each, f"{place}, {key}".removeprefix(", ")) for key, each in value.items()}
             case list() | tuple():
                 return [self.all(each, f"{place} {number}") for number, each in enumerate(value, 1)]
             case str():
@@ -257,7 +251,7 @@ def _written(
     """Return the sheet as Markdown, with what belongs to it."""
     said, first = functools.partial(phrase, language), runs[0].prepared
     differs = bool(first.settings.changed().keys() - {"seed"}) or bool(first.unusual_engine)
-    content = _Filling(path, runs, answers=answers, differs=said(_NOT_HERE) if differs else "").sheet(words)
+    content = _Filling(path, runs, answers=answers, differs=said(_NOT_HERE) if differs else "").all(words, "")
     story = first.module.__doc__ or "" if language == "en" else ""
     content["leaves_out"] = content["leaves_out"] or left_out(story).replace("<", "&lt;")
     for name in ("predict", *SECTIONS) if lab else ():
