@@ -43,11 +43,11 @@ class Running:
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
         names: list[str] = []
-        if "molecule_speed" in dataset.variables and "speed_bnds" in dataset.variables:
+        if {"molecule_speed", "speed_bnds", "speed_probability_density"} <= set(dataset.variables):
             self.bins = np.append(dataset["speed_bnds"].values[:, 0], dataset["speed_bnds"].values[-1, 1])
             self.speed = dataset["molecule_speed"].transpose("elapsed_time", "molecule").values
             self.frames = max(1, -(-_SPEEDS // self.speed.shape[1]))
-            names += ["speed_probability_density"] if "speed_probability_density" in dataset.variables else []
+            names.append("speed_probability_density")
         if "molecule_position" in dataset.variables and "height_bnds" in dataset.variables:
             names += [name for name in _LAYERED if name in dataset.variables]
             self._sum_layers()

@@ -25,7 +25,7 @@ _NEAR = 0.8
 """The critical temperature is estimated from temperatures above this share of the expected value."""
 _REACH = 0.45
 """Length of the line of a run to each side of its point, in mean distances between points."""
-_DENSE = ("liquid_density", "vapor_density")
+_DENSE = {"liquid_density": "liquid", "vapor_density": "vapour"}
 _TOO_HIGH = "Both meet at a temperature that is too high: the law of their difference holds only near it."
 
 
@@ -61,10 +61,7 @@ def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
     title, label = "Clausius and Clapeyron: ln p against 1/T", "vapour pressure"
     panels = [Panel("line", title, tuple(lines), "1000 K / T", label, "1", "hPa", y_scale="log")]
     if set(_DENSE) <= set(data):
-        lines = [
-            Line(name, "kelvin", label, error=f"{name}_se")
-            for name, label in zip(_DENSE, ("liquid", "vapour"), strict=True)
-        ]
+        lines = [Line(name, "kelvin", label, error=f"{name}_se") for name, label in _DENSE.items()]
         lines.append(Line("mean", "kelvin", "mean of both"))
         if fluid is not None:
             flat = flat.assign(_critical(data, fluid.critical_temperature * strength))

@@ -14,6 +14,8 @@ from atmosbox.scene.panels import Line, Panel
 
 __all__ = ["convert", "labelled", "of_difference", "power_of_ten", "spelled"]
 
+_AGAIN = "run the scene again with this version of atmosbox"
+
 
 def convert(
     value: ArrayLike, unit: str, shown: str, *, name: str = "value", difference: bool = False
@@ -31,10 +33,7 @@ def convert(
         return numbers
     there, here = known_unit(unit), known_unit(shown)
     if there is None or here is None or there.si != here.si:
-        raise FileError(
-            f"The file holds {name} in {unit!r}, which cannot be drawn in {shown!r}: "
-            "run the scene again with this version of atmosbox."
-        )
+        raise FileError(f"The file holds {name} in {unit!r}, which cannot be drawn in {shown!r}: {_AGAIN}.")
     offset = 0.0 if difference else there.offset - here.offset
     return (numbers * (there.up / there.down) + offset) * (here.down / here.up)
 
@@ -57,7 +56,6 @@ def labelled(label: str, unit: str, power: int = 0) -> str:
 
 WORST = 0.2
 """A temperature is not drawn if its standard error is more than this share of it."""
-_AGAIN = "run the scene again with this version of atmosbox"
 
 
 class Curve(NamedTuple):

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import jinja2
 
@@ -43,7 +43,7 @@ def left_out(story: str) -> str:
     return found.group() if found else ""
 
 
-class AnyScene:
+class AnyScene(NamedTuple):
     """The object that the text of `WORDS` calls ``scene``.
 
     Parameters
@@ -52,8 +52,7 @@ class AnyScene:
         The runs of the sheet; those that have been made give their headline numbers.
     """
 
-    def __init__(self, runs: Sequence[Trial]) -> None:
-        self.runs = runs
+    runs: Sequence[Trial]
 
     def fact(self, name: str) -> Any:
         """Return a text about the scene by name.
