@@ -105,10 +105,10 @@ def pace(
     if number > MOST:
         problem = f"at {rate:g} pictures a second are {number} pictures, more than the {MOST} that a film may have"
         raise SettingError("seconds", seconds, problem, Option("seconds", math.floor(MOST / rate)), " or less")
-    every = np.arange(frames)
-    along = every if along is None else along
-    wanted = np.linspace(along[-1], along[0], number)[::-1]
-    return Pace(np.interp(wanted, along, every).round().astype(np.int64), rate)
+    index = np.arange(frames, dtype=np.float64)
+    place = index if along is None else along
+    wanted = np.linspace(place[-1], place[0], number)[::-1]
+    return Pace(np.interp(wanted, place, index).round().astype(np.int64), rate)
 
 
 _APART = 0.15  # if molecules fly farther than this between two pictures, in sides of the box, the footer says so

@@ -66,7 +66,8 @@ def _elements(sheet: Worksheet) -> list[str]:
                 name = said("choices of question {}").format(question)
                 made.append(_choices([*map(_written, lines)], name, ticked=sheet.answers))
             elif kind == "fence" and block.info == "axes":
-                made.append(_axes(*map(escape, axes(block)), said))
+                x, y = map(escape, axes(block))
+                made.append(_axes(x, y, said))
             else:
                 made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', _written(block)))
     return made
