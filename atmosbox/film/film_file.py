@@ -157,8 +157,6 @@ def sized(theme: Theme, kind: str) -> Theme:
 
 def _along(dataset: xr.Dataset) -> NDArray[np.float64] | None:
     """Return the logarithm of time if the first graph over time has a logarithmic axis; else None."""
-    over_time = [panel for panel in panels_of(dataset) if panel.kind == "line"]
+    scale = next((panel.x_scale for panel in panels_of(dataset) if panel.kind == "line"), "linear")
     time = dataset["elapsed_time"].values.astype(np.float64)
-    if not over_time or over_time[0].x_scale != "log" or time[0] <= 0.0:
-        return None
-    return np.log(time)
+    return np.log(time) if scale == "log" and time[0] > 0.0 else None

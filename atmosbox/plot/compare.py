@@ -128,11 +128,9 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
         return Naming(scenes, unlike, _labels(unlike, files), same=False)
     known = _parameters(scenes[0])
     told = [{name: each.get(name) for name in _MADE_BY} | rest for each, rest in zip(made, held, strict=True)]
-    changes = []
-    for name in dict.fromkeys(name for each in told for name in each):
-        values = tuple(_value(each.get(name), known.get(name)) for each in told)
-        if len(set(values)) > 1:
-            changes.append(Change(name, values))
+    names = dict.fromkeys(name for each in told for name in each)
+    every = [Change(name, tuple(_value(each.get(name), known.get(name)) for each in told)) for name in names]
+    changes = [change for change in every if len(set(change.values)) > 1]
     same = not changes and all(map(datasets[0].equals, datasets[1:]))
     return Naming(scenes, tuple(changes), _labels(changes, files), same)
 
