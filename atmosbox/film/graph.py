@@ -104,8 +104,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running) -> 
         return (first,)
     others = [panel for panel in rest if panel.kind != first.kind and panel.kind != "skewt"]
     others += [panel for panel in rest if panel.kind == first.kind]
-    picked = (first, *others[:1])
-    return tuple(panel for panel in panels if panel in picked)
+    return tuple(panel for panel in panels if panel in (first, *others[:1]))
 
 
 def drawer(dataset: xr.Dataset, look: Theme) -> Draw:

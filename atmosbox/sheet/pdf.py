@@ -213,14 +213,12 @@ class _Layout:
         columns = max(min(len(texts), LONG // max(map(len, texts))), 1)
         columns = 2 if columns == 3 and len(texts) == 4 else columns
         cells: list[Any] = [self.marked(text, self.cell) for text in texts] + [""] * (-len(texts) % columns)
-        style = _padding(TOP=1.0, BOTTOM=2.0, LEFT=14.0)
         rows = [cells[first : first + columns] for first in range(0, len(cells), columns)]
-        return self.table(rows, [1.0 / columns] * columns, style, spaceAfter=3.0)
+        return self.table(rows, [1.0 / columns] * columns, _padding(TOP=1.0, BOTTOM=2.0, LEFT=14.0), spaceAfter=3.0)
 
     def measurements(self, cells: Sequence[Sequence[SyntaxTreeNode]]) -> Flowable:
         """Return the table; a formula is below its quantity, and the lines of one quantity stay together."""
-        size = self.cell.fontSize
-        (what, _, *names), *lines = [[as_paragraph(cell, size) for cell in row] for row in cells]
+        (what, _, *names), *lines = [[as_paragraph(cell, self.cell.fontSize) for cell in row] for row in cells]
         said = self.said
         headed = said("quantity, with its formula") if what == said("quantity") else said("graph, and which curve")
         rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in (headed, *names)]]
