@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 FORMATS = ("gif", "mp4")
 _SIZES = {"gif": {"notes": (800, 450), "slides": (960, 540)}, "mp4": {"notes": (1280, 720), "slides": (1280, 720)}}
-_WIDE = {"notes": 7.2, "slides": 40.0 / 3.0}  # inch
 _SMOOTH = 0.1  # if molecules move less than this from frame to frame, in sides of the box, their motion looks smooth
 _MP4 = [
     "-f", "mp4", "-crf", "20", "-preset", "medium", "-movflags", "+faststart", "-fflags", "+bitexact",
@@ -152,14 +151,12 @@ def _write_mp4(pictures: Iterator[Image.Image], path: Path, chosen: Pace) -> Non
 def sized(theme: Theme, kind: str) -> Theme:
     """Return a theme with the size of the pictures of a film."""
     wide, high = _SIZES[kind][theme.name]
-    dots = wide / _WIDE[theme.name]
+    dots = wide / theme.wide[0]
     return replace(theme, wide=(wide / dots, high / dots), dots_per_inch=dots, grows=False)
 
 
 def _along(dataset: xr.Dataset) -> NDArray[np.float64] | None:
     """Return the logarithm of time if the first graph over time has a logarithmic axis; else None."""
-    over_time = [panel for panel in panels_of(dataset) if panel.kind == "line"]
+    scale = next((panel.x_scale for panel in panels_of(dataset) if panel.kind == "line"), "linear")
     time = dataset["elapsed_time"].values.astype(np.float64)
-    if not over_time or over_time[0].x_scale != "log" or time[0] <= 0.0:
-        return None
-    return np.log(time)
+    return np.log(time) if scale == "log" and time[0] > 0.0 else None

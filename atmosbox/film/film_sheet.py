@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from atmosbox.errors import FileError, Option, SettingError
 from atmosbox.file.molecules import Molecules
 from atmosbox.film.graph import Graph, Running, chosen, drawer
-from atmosbox.plot.box_picture import box_picture, instant
+from atmosbox.plot.box_picture import BoxPicture, box_picture, instant
 from atmosbox.plot.caption import footer
 from atmosbox.plot.curve import convert, spelled
-from atmosbox.plot.discs import colour_bar
+from atmosbox.plot.discs import DiscPicture, colour_bar
 from atmosbox.plot.layout import TextMeasure, blank, put_footer, put_heading, put_panels, settle
 from atmosbox.plot.run_figure import explanation, panels_of
 from atmosbox.plot.theme import Theme
@@ -105,10 +105,10 @@ def pace(
     if number > MOST:
         problem = f"at {rate:g} pictures a second are {number} pictures, more than the {MOST} that a film may have"
         raise SettingError("seconds", seconds, problem, Option("seconds", math.floor(MOST / rate)), " or less")
-    if along is not None and frames > 1:
-        wanted = np.linspace(along[0], along[-1], number)
-        return Pace(np.interp(wanted, along, np.arange(frames)).round().astype(np.int64), rate)
-    return Pace(np.linspace(frames - 1, 0, number).round().astype(np.int64)[::-1], rate)
+    index = np.arange(frames, dtype=np.float64)
+    place = index if along is None else along
+    wanted = np.linspace(place[-1], place[0], number)[::-1]
+    return Pace(np.interp(wanted, place, index).round().astype(np.int64), rate)
 
 
 _APART = 0.15  # if molecules fly farther than this between two pictures, in sides of the box, the footer says so
@@ -140,13 +140,9 @@ class Sheet:
         running = Running(dataset)
         panels = chosen(dataset, panels_of(dataset), running)
         if held is None and not panels:
-            raise FileError(
-                "The file has no graph that grows with time",
-                "run the scene again with ",
-                Option("save_molecules", True),
-                ", and film it without ",
-                Option("graphs"),
-            )
+            again, alone = Option("save_molecules", True), Option("graphs")
+            fix = ("run the scene again with ", again, ", and film it without ", alone)
+            raise FileError("The file has no graph that grows with time", *fix)
         # The share of the width that the box has beside its graphs.
         beside = sum(panel.kind in ("profile", "skewt") for panel in panels)
         share = 0.0 if held is None else 1.0 if not panels else 0.34 if beside > 1 else 0.42
@@ -155,8 +151,9 @@ class Sheet:
         wide, high = (72.0 * float(size) for size in self.figure.get_size_inches())  # pt
         self.stage = None if held is None else box_picture(self.figure.add_axes((0, 0, 1, 1)), dataset, held, look)
         # The footer below all tells a viewer how far molecules fly between two pictures if that is far.
-        words = [footer(dataset), *([] if self.stage is None else self.stage.legend())]
-        words += self._jumps(held, np.arange(dataset.sizes["elapsed_time"]) if frames is None else frames)
+        words = [footer(dataset)]
+        if self.stage is not None:
+            words += self.stage.legend() + self._jumps(self.stage, slice(None) if frames is None else frames)
         bottom = put_footer(measure, " · ".join(words) + explanation(dataset, panels), look)
         top = put_heading(measure, str(dataset.attrs.get("title", "")), 1.25 * look.title, look, share or 1.0)
         self.clock = measure.write(self._time(0), look.text / 2, top, fontsize=look.title, va="top")
@@ -193,17 +190,15 @@ class Sheet:
     def _time(self, frame: int) -> str:
         return instant(self.dataset, self.held, frame)
 
-    def _jumps(self, held: Molecules | None, frames: NDArray[np.int64]) -> list[str]:
+    def _jumps(self, stage: BoxPicture | DiscPicture, frames: NDArray[np.int64] | slice) -> list[str]:
         """Return a phrase on the distance that a molecule flies between two pictures, if that is far."""
-        if held is None or held.discs or frames.size < 2:
+        held, times = stage.held, stage.held.time[frames]
+        if held.discs or times.size < 2:
             return []
         unit = str(self.dataset["elapsed_time"].attrs.get("units", "s"))
-        apart = float(np.median(np.diff(held.time[frames])))
+        apart = float(np.median(np.diff(times)))
         flown = float(np.nanmean(held.speed)) * apart * to_si(1.0, unit)
-        if self.stage is None or flown < _APART * held.side.max():
+        if flown < _APART * held.side.max():
             return []
-        far = f"{float(convert(flown, 'm', self.stage.unit)):.2g}"
-        far, apart_text = (f"{float(text):g}" for text in (far, f"{apart:.2g}"))
-        return [
-            f"a picture every {apart_text}\u00a0{unit}, in which a molecule flies {far}\u00a0{spelled(self.stage.unit)}"
-        ]
+        every, far = (f"{float(f'{each:.2g}'):g}" for each in (apart, convert(flown, "m", stage.unit)))
+        return [f"a picture every {every}\u00a0{unit}, in which a molecule flies {far}\u00a0{spelled(stage.unit)}"]

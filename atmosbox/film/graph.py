@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from atmosbox.plot.atmosphere_picture import ascent_of, draw_atmosphere, draw_ground, draw_way
-from atmosbox.plot.curve import Curve, convert, curve
+from atmosbox.plot.curve import Curve, curve, series
 from atmosbox.plot.draw import MEASURED, Entry, draw_line, draw_steps, from_start
 from atmosbox.plot.layout import Draw
 from atmosbox.plot.run_figure import painter
@@ -44,11 +43,11 @@ class Running:
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
         names: list[str] = []
-        if "molecule_speed" in dataset.variables and "speed_bnds" in dataset.variables:
+        if {"molecule_speed", "speed_bnds", "speed_probability_density"} <= set(dataset.variables):
             self.bins = np.append(dataset["speed_bnds"].values[:, 0], dataset["speed_bnds"].values[-1, 1])
             self.speed = dataset["molecule_speed"].transpose("elapsed_time", "molecule").values
             self.frames = max(1, -(-_SPEEDS // self.speed.shape[1]))
-            names += ["speed_probability_density"] if "speed_probability_density" in dataset.variables else []
+            names.append("speed_probability_density")
         if "molecule_position" in dataset.variables and "height_bnds" in dataset.variables:
             names += [name for name in _LAYERED if name in dataset.variables]
             self._sum_layers()
@@ -59,15 +58,11 @@ class Running:
         data = self.dataset
         bounds = np.append(data["height_bnds"].values[:, 0], data["height_bnds"].values[-1, 1])
         height = data["molecule_position"].transpose("elapsed_time", "molecule", "axis").values[:, :, 2]
-        speed = data["molecule_speed"].transpose("elapsed_time", "molecule").values
-        frames, layers = len(height), len(bounds) - 1
-        count, square = np.zeros((frames, layers)), np.zeros((frames, layers))
-        for frame in range(frames):
-            count[frame] = np.histogram(height[frame], bounds)[0]
-            square[frame] = np.histogram(height[frame], bounds, weights=speed[frame].astype(np.float64) ** 2)[0]
-        so_far = np.arange(1.0, frames + 1.0)[:, None]
-        self.count = np.cumsum(count, axis=0) / so_far
-        self.square = np.cumsum(square, axis=0) / so_far
+        square = data["molecule_speed"].transpose("elapsed_time", "molecule").values.astype(np.float64) ** 2
+        so_far = np.arange(1.0, len(height) + 1.0)[:, None]
+        count = [np.histogram(each, bounds)[0] for each in height]
+        energy = [np.histogram(each, bounds, weights=held)[0] for each, held in zip(height, square, strict=True)]
+        self.count, self.square = (np.cumsum(each, axis=0) / so_far for each in (count, energy))
 
     def at(self, frame: int) -> xr.Dataset:
         """Return the dataset with the averages up to a frame in place of those of the whole run."""
@@ -109,8 +104,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running) -> 
         return (first,)
     others = [panel for panel in rest if panel.kind != first.kind and panel.kind != "skewt"]
     others += [panel for panel in rest if panel.kind == first.kind]
-    picked = (first, *others[:1])
-    return tuple(panel for panel in panels if panel in picked)
+    return tuple(panel for panel in panels if panel in (first, *others[:1]))
 
 
 def drawer(dataset: xr.Dataset, look: Theme) -> Draw:
@@ -139,9 +133,7 @@ class Graph:
         self.lines = [line for line in panel.lines if line.role == "data"]
         self.curves = {line: curve(dataset, panel, line) for line in self.lines if line.y not in running.names}
         in_time = panel.kind == "line" and all(line.x == "elapsed_time" for line in self.lines)
-        time = dataset["elapsed_time"]
-        unit = panel.x_unit if in_time else ""
-        self.time = convert(time.values, str(time.attrs.get("units", "1")), unit, name="elapsed_time")
+        self.time = series(dataset, "elapsed_time", panel.x_unit if in_time else "")
         self.cursor = axes.axvline(self.time[0], color=DARK, linewidth=look.line / 2, zorder=5.0)
         self.cursor.set_visible(in_time)
         # CAPE and CIN are shaded up to the level that the parcel has reached
@@ -188,10 +180,8 @@ class Graph:
         values = Curve(np.where(past, x, np.nan), np.where(past, y, np.nan), error)
         draw_line(self.axes, self.panel, line, from_start(self.panel, line, values), self.look, index)
         if each:
-            colour = DATA_COLOURS[index % len(DATA_COLOURS)]
-            dot = Line2D(x[[frame]], y[[frame]], marker="o", markersize=1.5 * self.look.marker, zorder=6.0)
-            dot.set(markerfacecolor=colour, markeredgecolor="white")
-            self.axes.add_line(dot)
+            dot: dict[str, Any] = {"mfc": DATA_COLOURS[index % len(DATA_COLOURS)], "mec": "white", "zorder": 6.0}
+            self.axes.plot(x[frame], y[frame], "o", ms=1.5 * self.look.marker, **dot)
 
     def _below(self, frame: int) -> Rectangle:
         """Return the part of the axes below the point that the first curve has reached in a frame."""

@@ -62,8 +62,7 @@ class Ascent(NamedTuple):
     def radius(self) -> Floats:
         """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
         volume = (self.temperature + 273.15) / self.pressure
-        wide: Floats = np.cbrt(volume / volume[0])
-        return wide
+        return np.asarray(np.cbrt(volume / volume[0]))
 
     @property
     def crosses(self) -> bool:
@@ -106,8 +105,7 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme, start: tuple[
     way = ascent_of(dataset, start, risen=True)
     draw_ground(axes, way, theme)
     if way.crosses:
-        rising = np.sign(np.diff(way.height))
-        rising[rising == 0.0] = 1.0
+        rising = np.diff(way.height) >= 0.0
         stations = np.array([0, *np.flatnonzero(np.diff(rising)) + 1, way.height.size - 1])
     else:
         heights = np.linspace(way.height[0], way.height[-1], 5 if theme.grows else 4)  # a slide has less room

@@ -93,8 +93,7 @@ class BoxPicture:
         self.tinted = held.speed if held.neighbours is None else held.neighbours
         self.norm = Normalize(0.0, _NEIGHBOURS)
         if held.neighbours is None:
-            speed = held.speed[:, self.shown]
-            self.norm = colour_scale(speed[np.isfinite(speed)].astype(np.float64))
+            self.norm = colour_scale(held.speed[:, self.shown].astype(np.float64))
         axes.set_axis_off()
         if "piston" in held.walls:  # upright edges of the largest box, up to which the piston may rise
             ends = project(corners(self.largest), self.largest)[0]

@@ -143,11 +143,9 @@ def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tup
     if panel.kind == "atmosphere":
         return (panel.x_label, ""), (panel.y_label or "height", "km")
     line = panel.lines[0]
-    names = [read(dataset, name).attrs.get("long_name", name.replace("_", " ")) for name in (line.x, line.y)]
-    return (
-        (panel.x_label or str(names[0]), unit_of(dataset, panel, "x")),
-        (panel.y_label or str(names[1]), unit_of(dataset, panel, "y")),
-    )
+    x, y = (str(read(dataset, name).attrs.get("long_name", name.replace("_", " "))) for name in (line.x, line.y))
+    units = unit_of(dataset, panel, "x"), unit_of(dataset, panel, "y")
+    return (panel.x_label or x, units[0]), (panel.y_label or y, units[1])
 
 
 def _scalar(dataset: xr.Dataset, name: str) -> float:

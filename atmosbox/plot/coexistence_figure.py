@@ -25,7 +25,7 @@ _NEAR = 0.8
 """The critical temperature is estimated from temperatures above this share of the expected value."""
 _REACH = 0.45
 """Length of the line of a run to each side of its point, in mean distances between points."""
-_DENSE = ("liquid_density", "vapor_density")
+_DENSE = {"liquid_density": "liquid", "vapor_density": "vapour"}
 _TOO_HIGH = "Both meet at a temperature that is too high: the law of their difference holds only near it."
 
 
@@ -61,10 +61,7 @@ def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
     title, label = "Clausius and Clapeyron: ln p against 1/T", "vapour pressure"
     panels = [Panel("line", title, tuple(lines), "1000 K / T", label, "1", "hPa", y_scale="log")]
     if set(_DENSE) <= set(data):
-        lines = [
-            Line(name, "kelvin", label, error=f"{name}_se")
-            for name, label in zip(_DENSE, ("liquid", "vapour"), strict=True)
-        ]
+        lines = [Line(name, "kelvin", label, error=f"{name}_se") for name, label in _DENSE.items()]
         lines.append(Line("mean", "kelvin", "mean of both"))
         if fluid is not None:
             flat = flat.assign(_critical(data, fluid.critical_temperature * strength))
@@ -87,25 +84,24 @@ def _curves(data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float)
     half = _REACH * float(np.ptp(1.0 / kelvin)) / (len(kelvin) - 1)
     ends = 1.0 / kelvin[:, None] + np.array([-half, half, np.nan])
     slope = pressure[:, None] * np.exp(-data.clapeyron_slope.values[:, None] * (ends - 1.0 / kelvin[:, None]))
+    density, pascal = {"units": "kg m-3"}, {"units": "Pa"}
     flat = xr.Dataset({"kelvin": ("run", kelvin, {"units": "K"}), "inverse": ("point", _parted(1e3 / kelvin))})
-    for name, values in (("p", pressure), ("p_se", _error(data, "vapor_pressure"))):
-        flat[name] = ("point", _parted(values), {"units": "Pa"})
-    flat["inverse_ends"], flat["slope"] = ("end", 1e3 * ends.ravel()), ("end", slope.ravel(), {"units": "Pa"})
+    flat["p"] = ("point", _parted(pressure), pascal)
+    flat["p_se"] = ("point", _parted(_error(data, "vapor_pressure")), pascal)
+    flat["inverse_ends"], flat["slope"] = ("end", 1e3 * ends.ravel()), ("end", slope.ravel(), pascal)
     if set(_DENSE) <= set(data):
         for name in _DENSE:
-            for part, values in ((name, data[name].values), (f"{name}_se", _error(data, name))):
-                flat[part] = ("run", values, {"units": "kg m-3"})
-        flat["mean"] = 0.5 * (flat.liquid_density + flat.vapor_density).assign_attrs(units="kg m-3")
-        flat["width"] = ("side", [0.0, 1.05 * float(np.nanmax(flat.liquid_density))], {"units": "kg m-3"})
+            flat[name] = ("run", data[name].values, density)
+            flat[f"{name}_se"] = ("run", _error(data, name), density)
+        flat["mean"] = 0.5 * (flat.liquid_density + flat.vapor_density).assign_attrs(density)
+        flat["width"] = ("side", [0.0, 1.05 * float(np.nanmax(flat.liquid_density))], density)
     if fluid is not None:
         room = 0.03 * np.ptp(kelvin)
         fine = np.linspace(kelvin.min() - room, kelvin.max() + room, 100)
         unit = strength * fluid.well_depth / fluid.well_diameter**3
         model = theory.well_vapor_pressure(fine * BOLTZMANN / (strength * fluid.well_depth)) * unit
-        flat["inverse_fine"] = ("fine", 1e3 / fine)
-        flat["published"], flat["real"] = (
-            ("fine", each, {"units": "Pa"}) for each in (model, fluid.vapor_pressure(fine))
-        )
+        flat["inverse_fine"], flat["published"] = ("fine", 1e3 / fine), ("fine", model, pascal)
+        flat["real"] = ("fine", fluid.vapor_pressure(fine), pascal)
         flat["critical"] = ((), fluid.critical_temperature * strength, {"units": "K"})
     return flat
 

@@ -6,6 +6,7 @@ import math
 import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -127,23 +128,19 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
         return Naming(scenes, unlike, _labels(unlike, files), same=False)
     known = _parameters(scenes[0])
     told = [{name: each.get(name) for name in _MADE_BY} | rest for each, rest in zip(made, held, strict=True)]
-    changes = []
-    for name in dict.fromkeys(name for each in told for name in each):
-        values = tuple(_value(each.get(name), known.get(name)) for each in told)
-        if len(set(values)) > 1:
-            changes.append(Change(name, values))
+    names = dict.fromkeys(name for each in told for name in each)
+    every = [Change(name, tuple(_value(each.get(name), known.get(name)) for each in told)) for name in names]
+    changes = [change for change in every if len(set(change.values)) > 1]
     same = not changes and all(map(datasets[0].equals, datasets[1:]))
     return Naming(scenes, tuple(changes), _labels(changes, files), same)
 
 
 def _parameters(scene: str) -> dict[str, Parameter]:
     """Return the settings of a scene that comes with atmosbox; none for a user's own scene, whose file is not run."""
-    try:
-        if scene not in scenarios.names():
-            return {}
-        return {parameter.name: parameter for parameter in scenarios.load(scene).Settings.describe()}
-    except AtmosboxError:
-        return {}
+    with suppress(AtmosboxError):
+        if scene in scenarios.names():
+            return {parameter.name: parameter for parameter in scenarios.load(scene).Settings.describe()}
+    return {}
 
 
 def _value(value: object, parameter: Parameter | None) -> str:
@@ -270,12 +267,10 @@ def _compared(datasets: Sequence[xr.Dataset], name: str) -> Compared:
 
 def _measured(dataset: xr.Dataset, name: str, unit: str) -> Measured:
     def shown(part: str, *, difference: bool = False) -> float:
-        if part not in dataset.variables:
-            return math.nan
-        try:
-            return from_si(float(dataset[part].values), unit, difference=difference)
-        except UnitError:
-            return math.nan
+        with suppress(UnitError):
+            if part in dataset.variables:
+                return from_si(float(dataset[part].values), unit, difference=difference)
+        return math.nan
 
     return Measured(shown(name), shown(f"{name}_se", difference=True), shown(f"{name}_theory"))
 
@@ -291,7 +286,7 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     """Draw several runs into one figure, with the panels that they share and a label for each run in the legend."""
     look, panels = find(theme), shared_panels(datasets)
     draw = painter(datasets, look, partial(_draw_lines, datasets, labels))
-    return page(panels, look, datasets[0], draw, [], _small(datasets) + explanation(datasets[0], panels), title)
+    return page(panels, look, datasets[0], draw, [], _small(datasets) + explanation(datasets[0], panels), heading=title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
@@ -321,20 +316,18 @@ def _small(datasets: Sequence[xr.Dataset]) -> str:
 
 def _draw_lines(
     datasets: Sequence[xr.Dataset], names: Sequence[str], axes: Axes, panel: Panel, look: Theme
-) -> tuple[list[Entry], int]:
-    """Draw the curves of all runs; return the legend entries and the number of values of the longest curve.
+) -> list[Entry]:
+    """Draw the curves of all runs, and return the legend entries.
 
     Of a measured curve, colour and marker show the run, dashes show the curve. A calculated curve is drawn once if all
     runs have the same, else once for each run in a darker colour; if the scenes of the runs call it differently, as the
     dry and the moist adiabat, each has its own entry.
     """
     entries: list[Entry] = []
-    most = 0
     for role in ROLES:
         lines = [line for line in panel.lines if line.role == role]
         for index, line in enumerate(lines):
             curves = {k: curve(each, panel, line) for k, each in enumerate(datasets) if holds(each, line.variables)}
-            most = max([most, *(each.x.size for each in curves.values())])
             called = {k: _called(datasets[k], panel, line) for k in curves}
             alike, laws = len(set(called.values())) < 2, [*curves.values()]
             if role != "data" and alike and all(_same(laws[0], other, panel) for other in laws[1:]):
@@ -357,7 +350,7 @@ def _draw_lines(
             if role != "data" and curves and alike:
                 grey = Line2D([], [], **line_style(role, look, index) | {"color": DARK})
                 entries.append(((grey,), line.label))
-    return entries, most
+    return entries
 
 
 def _called(dataset: xr.Dataset, panel: Panel, line: Line) -> str:

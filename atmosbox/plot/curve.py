@@ -14,6 +14,8 @@ from atmosbox.scene.panels import Line, Panel
 
 __all__ = ["convert", "labelled", "of_difference", "power_of_ten", "spelled"]
 
+_AGAIN = "run the scene again with this version of atmosbox"
+
 
 def convert(
     value: ArrayLike, unit: str, shown: str, *, name: str = "value", difference: bool = False
@@ -31,10 +33,7 @@ def convert(
         return numbers
     there, here = known_unit(unit), known_unit(shown)
     if there is None or here is None or there.si != here.si:
-        raise FileError(
-            f"The file holds {name} in {unit!r}, which cannot be drawn in {shown!r}: "
-            "run the scene again with this version of atmosbox."
-        )
+        raise FileError(f"The file holds {name} in {unit!r}, which cannot be drawn in {shown!r}: {_AGAIN}.")
     offset = 0.0 if difference else there.offset - here.offset
     return (numbers * (there.up / there.down) + offset) * (here.down / here.up)
 
@@ -57,7 +56,6 @@ def labelled(label: str, unit: str, power: int = 0) -> str:
 
 WORST = 0.2
 """A temperature is not drawn if its standard error is more than this share of it."""
-_AGAIN = "run the scene again with this version of atmosbox"
 
 
 class Curve(NamedTuple):
@@ -102,9 +100,9 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     measured_is_x = panel.measured_across
     axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
     (name, unit), other = axes if measured_is_x else axes[::-1]
-    along = _values(dataset, *other)
-    measured = _values(dataset, name, unit)
-    error = None if line.error is None else _values(dataset, line.error, unit, difference=True)
+    along = series(dataset, *other)
+    measured = series(dataset, name, unit)
+    error = None if line.error is None else series(dataset, line.error, unit, difference=True)
     try:
         along, measured = np.broadcast_arrays(np.atleast_1d(along), measured)
         if error is not None:
@@ -145,7 +143,8 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
     return unit or _unit(read(dataset, first.x if axis == "x" else first.y))
 
 
-def _values(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = False) -> NDArray[np.float64]:
+def series(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = False) -> NDArray[np.float64]:
+    """Return a single number or a list of values of the file in the unit that is shown."""
     variable = read(dataset, name)
     if variable.ndim > 1:
         raise FileError(

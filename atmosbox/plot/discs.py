@@ -57,13 +57,14 @@ class DiscPicture:
         wide = convert(held.diameter, "m", unit)
         rim = min(0.8, 15.0 * float(np.median(wide) / self.box.max()))  # it must not hide the colour of a small disc
         self.norm = colour_scale(held.speed)
-        self.trail: Artist | None = None
+        self.trail = LineCollection([], linewidths=look.line * 0.8, zorder=2.0)
         self.discs = EllipseCollection(
             wide, wide, np.zeros_like(wide), units="xy", offsets=self.place[-1], offset_transform=axes.transData,
             cmap=FIELD_COLOURS, norm=self.norm, edgecolors=DARK, zorder=3.0,
             linewidths=look.line * np.where(self.heavy, rim, rim / 3.0),
         )  # fmt: skip
         axes.add_collection(self.discs)
+        axes.add_artist(self.trail)
         axes.set_aspect("equal", adjustable="box", anchor="NW")
         axes.set(xlim=(0.0, self.box[0]), ylim=(0.0, self.box[1]))
         axes.spines[:].set(visible=True, linewidth=look.line * 1.2, color=DARK)
@@ -72,20 +73,16 @@ class DiscPicture:
         """Draw a frame: the discs, and their paths in the frames before, fainter for older ones."""
         self.discs.set_offsets(self.place[frame])
         self.discs.set_array(self.held.speed[frame])
-        if self.trail is not None:
-            self.trail.remove()
-            self.trail = None
         frames = min(_TRAIL_FRAMES, _MOST_SEGMENTS // self.place.shape[1], frame)
         path = self.place[frame - frames : frame + 1]
         if frames < 1:
-            return
+            return self.trail.set_segments([])
         steps = np.median(np.linalg.norm(np.diff(path, axis=0), axis=2), axis=0)
         path = path[:, steps <= _LONGEST_STEP * float(self.box.min())]
         segments = np.stack((path[:-1], path[1:]), axis=2).reshape(-1, 2, 2)
         alpha = np.repeat(np.linspace(0.1, 0.8, frames), path.shape[1])
         colours = np.column_stack((np.tile(to_rgb(FAINT), (alpha.size, 1)), alpha))
-        self.trail = LineCollection(list(segments), colors=colours, linewidths=self.look.line * 0.8, zorder=2.0)
-        self.axes.add_artist(self.trail)
+        self.trail.set(segments=list(segments), color=colours)
 
     def legend(self) -> list[str]:
         """Return the phrases of the footer about the discs."""

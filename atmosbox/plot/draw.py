@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any, cast
 
@@ -115,8 +114,8 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
 
 
 Entry = tuple[tuple[Artist, ...], str]
-Curves = Callable[[Axes, Panel, Theme], tuple[list[Entry], int]]
-"""Draws the curves of a panel; returns the legend entries, and the number of values of the longest curve."""
+Curves = Callable[[Axes, Panel, Theme], list[Entry]]
+"""Draws the curves of a panel and returns the legend entries."""
 
 # The axis of a histogram ends where data and theory are below this share of the peak.
 _NEGLIGIBLE = 1e-3
@@ -130,7 +129,7 @@ def draw(axes: Axes, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, cur
         return draw_atmosphere(axes, runs[0], theme, panel.start)
     axes.set(xscale=panel.x_scale, yscale=panel.y_scale)
     axes.grid(visible=True)
-    entries, most = curves(axes, panel, theme)
+    entries = curves(axes, panel, theme)
     if panel.areas and len(runs) == 1:
         x, y, _ = curve(runs[0], panel, panel.lines[0])
         # above the highest level where it rises by itself, a parcel is not inhibited: it has passed the EL
@@ -138,7 +137,7 @@ def draw(axes: Axes, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, cur
         for name, shown in (("CAPE", x > 0.0), ("CIN", (x < 0.0) & below)):
             area = axes.fill_betweenx(y, np.where(shown, x, 0.0), zorder=0.8, **AREAS[name])
             entries.append(((area,), name))
-    set_limits(axes, panel, most)
+    set_limits(axes, panel)
     if len(runs) == 1:
         draw_guides(axes, panel, theme)
     return entries
@@ -181,27 +180,23 @@ def from_start(panel: Panel, line: Line, values: Curve) -> Curve:
     return Curve(np.append(x, values.x), np.append(panel.start[1], values.y), error)
 
 
-def draw_lines(dataset: xr.Dataset, axes: Axes, panel: Panel, theme: Theme) -> tuple[list[Entry], int]:
-    """Draw the curves of one run; return the legend entries and the number of values of the longest curve."""
-    seen: Counter[str] = Counter()
-    entries: list[Entry] = []
-    most = 0
-    for line in panel.lines:
-        index = seen[line.role]
-        seen[line.role] += 1
+def draw_lines(dataset: xr.Dataset, axes: Axes, panel: Panel, theme: Theme) -> list[Entry]:
+    """Draw the curves of one run, and return the legend entries."""
+    artists: dict[str, tuple[Artist, ...]] = {}
+    for place, line in enumerate(panel.lines):
+        index = [before.role for before in panel.lines[:place]].count(line.role)
         if panel.kind == "histogram" and line.role == "data":
-            artists = draw_steps(axes, panel, line, dataset, theme, index)
+            drawn = draw_steps(axes, panel, line, dataset, theme, index)
         else:
             values = from_start(panel, line, curve(dataset, panel, line))
-            artists = draw_line(axes, panel, line, values, theme, index)
-            most = max(most, values.x.size)
-        if line.label not in [label for _, label in entries]:
-            entries.append((artists, line.label))
-    return entries, most
+            drawn = draw_line(axes, panel, line, values, theme, index)
+        artists.setdefault(line.label, drawn)
+    return [(drawn, label) for label, drawn in artists.items()]
 
 
-def set_limits(axes: Axes, panel: Panel, values: int) -> None:
-    """Set the limits of axes: no margin beside a curve of many ``values``, and heights that begin at zero."""
+def set_limits(axes: Axes, panel: Panel) -> None:
+    """Set the limits of axes: no margin beside a curve of many values, and heights that begin at zero."""
+    values = max((np.size(line.get_xdata()) for line in axes.lines), default=0)
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
     if panel.y_limits:
@@ -216,10 +211,8 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
         low, high = axes.dataLim.intervaly  # infinite without a value
         if 0.0 <= low < 0.2 * high:
             axes.set_ylim(bottom=0.0)
-    if panel.x_limits:
-        axes.set_xlim(*panel.x_limits)
-    if panel.y_limits:
-        axes.set_ylim(*panel.y_limits)
+    axes.set_xlim(*panel.x_limits)  # without limits, those of the curves stay
+    axes.set_ylim(*panel.y_limits)
     axes.xaxis.set_inverted(panel.x_invert)
     axes.yaxis.set_inverted(panel.y_invert)
 

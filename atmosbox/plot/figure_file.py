@@ -77,7 +77,6 @@ def write(
 ) -> Path:  # fmt: skip
     """Write a figure of some runs into a file, as `save` does; it is drawn once it is known that it can be written."""
     path, kind = named(path, format, FORMATS, force=force)
-    find(theme)
     parameters = "; ".join(str(dataset.attrs.get("atmosbox_parameters", "")) for dataset in runs)
     write_whole(path, render(draw(), kind, theme, title=title, parameters=parameters))
     return path

@@ -23,7 +23,7 @@ _BAR = 0.125  # width of the colour bar with its numbers, in widths of the page
 _SLOWEST = 0.15  # least speed of the longest arrow, in units of the thermal speed of a molecule
 _ARROWS = 8  # greatest number of arrows along a box
 _AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
-_TALLEST, _TALLEST_ON_SCREEN = 0.3, 0.3  # height of the boxes, in widths of the page and in heights of a screen
+_TALLEST = 0.3  # height of the boxes, in widths of the page or in heights of a screen
 
 
 def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
@@ -57,7 +57,7 @@ def flow_height(dataset: xr.Dataset, look: Theme) -> float:
     wide, high = (72.0 * size for size in look.wide)
     across, up = (float(np.ptp(dataset[f"{name}_bnds"].values)) for name in ("distance", "height"))
     each = 0.9 * (1.0 - _BAR) * wide / len(instants(dataset)) * up / across
-    return min(each, _TALLEST * wide if look.grows else _TALLEST_ON_SCREEN * high) + _AROUND * look.text
+    return min(each, _TALLEST * (wide if look.grows else high)) + _AROUND * look.text
 
 
 def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float) -> None:

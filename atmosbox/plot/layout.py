@@ -146,17 +146,17 @@ _SMALLEST = 0.6  # least size of a label that is too long for its axis, in units
 
 def page(
     panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[list[Reading]],
-    small: str, heading: str, height: float = 0.0, put: Callable[[TextMeasure, float], None] | None = None,
+    small: str, height: float = 0.0, put: Callable[[TextMeasure, float], None] | None = None, heading: str = "",
 ) -> Figure:  # fmt: skip
     """Return a page of panels, with a heading and numbers in large type above them and small type below them.
 
-    The variables of the dataset give the labels of the axes. ``put`` draws pictures above the panels, of this height
-    [pt], given the page and their distance from its upper end [pt].
+    The dataset gives the heading, unless one is given, and the labels of the axes. ``put`` draws pictures above the
+    panels, of this height [pt], given the page and their distance from its upper end [pt].
     """
     with style(look):
         drawing = blank(look.wide if len(panels) > 1 or height else look.narrow, look)
         measure = TextMeasure(drawing)
-        above = put_heading(measure, heading, 1.3 * look.title, look)
+        above = put_heading(measure, heading or str(dataset.attrs.get("title", "")), 1.3 * look.title, look)
         above += put_numbers(measure, list(chain(*readings)), look, above)
         if look.grows:
             drawing.set_figheight(drawing.get_figheight() + (above + height) / 72)
@@ -303,10 +303,10 @@ def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
     if len(panels) == 2:
         return [[0], [1]]
     columns: list[list[int]] = []
-    for index, panel in enumerate(panels):
-        paired = bool(columns) and len(columns[-1]) == 1 and panels[columns[-1][0]].kind not in _TALL
-        if paired and panel.kind not in _TALL:
-            columns[-1].append(index)
+    for index in range(len(panels)):
+        column = [*columns[-1], index] if columns else []
+        if len(column) == 2 and all(panels[place].kind not in _TALL for place in column):
+            columns[-1] = column
         else:
             columns.append([index])
     return columns

@@ -59,14 +59,13 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """
     look = find(theme)
     panels = panels_of(dataset)
-    heading = str(dataset.attrs.get("title", ""))
     small = footer(dataset) + explanation(dataset, panels)
     readings = headlines(dataset, panels)
     height = flow_height(dataset, look)
     if height and not look.grows:  # a slide has no room for more below the pictures of the wind
         panels, readings = panels[:2], []
     put = partial(put_flow, dataset, look) if height else None
-    return page(panels, look, dataset, painter([dataset], look), readings, small, heading, height, put)
+    return page(panels, look, dataset, painter([dataset], look), readings, small, height, put)
 
 
 def painter(runs: Sequence[xr.Dataset], look: Theme, curves: Curves | None = None) -> Draw:
@@ -84,18 +83,13 @@ def painter(runs: Sequence[xr.Dataset], look: Theme, curves: Curves | None = Non
 
 def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
     """Return the text of the footer that explains error bars, hollow points and the background of a skew-T."""
-    has_errors = any(line.error for panel in panels for line in panel.lines)
-    has_hollow = any(
-        hollow_points(curve(dataset, panel, line)).any()
-        for panel in panels
-        for line in panel.lines
-        if line.role == "data" and panel.kind != "histogram"
-    )
+    lines = [(panel, line) for panel in panels for line in panel.lines]
+    points = [each for each in lines if each[1].role == "data" and each[0].kind != "histogram"]
     along = " and ".join(dict.fromkeys(panel.x_label or "x" for panel in panels if panel.averages))
     small = f" · against {along}: averages of frames, ± 1 standard deviation of single frames" if along else ""
-    if has_errors:
+    if any(line.error for _, line in lines):
         small += f" · {'other ' if along else ''}bars and bands: ± 1 standard error"
-        small += ", hollow: not known" if has_hollow else ""
+        small += ", hollow: not known" * any(hollow_points(curve(dataset, *each)).any() for each in points)
     return small + (f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else "")
 
 
@@ -180,8 +174,8 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         legend = box_picture(Figure().add_subplot(), dataset, held, look).legend()
     small = " · ".join([footer(dataset), *legend]) + explanation(dataset, panels)
     height = 72.0 * (_HIGH * look.wide[0] if look.grows else _HIGH_ON_SCREEN * look.wide[1])
-    heading, put = str(dataset.attrs.get("title", "")), partial(_put_boxes, dataset, held, look, height)
-    return page(panels, look, dataset, painter([dataset], look), readings, small, heading, height, put)
+    put = partial(_put_boxes, dataset, held, look, height)
+    return page(panels, look, dataset, painter([dataset], look), readings, small, height, put)
 
 
 def _put_boxes(

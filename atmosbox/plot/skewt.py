@@ -18,7 +18,7 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from atmosbox.plot.curve import Curve, convert, curve, read
+from atmosbox.plot.curve import Curve, curve, series
 from atmosbox.plot.draw import Curves, Entry
 from atmosbox.plot.theme import AREAS, DARK, FAINT, PALE, Theme
 from atmosbox.scene.panels import Panel
@@ -148,12 +148,10 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
     """Return the pressures of the levels that a panel marks by their names [hPa]; NaN in the file means not found."""
     found: dict[str, float] = {}
     for name in panel.marks:
-        if name not in dataset.variables or not dataset[name].attrs.get("resolved", True):
-            continue
-        variable = read(dataset, name)
-        pressure = float(convert(variable.values, str(variable.attrs.get("units", "1")), panel.y_unit, name=name))
-        if pressure > 0.0:
-            found.setdefault(_ABBREVIATIONS.get(name, name.replace("_", " ")), pressure)
+        if name in dataset.variables and dataset[name].attrs.get("resolved", True):
+            pressure = float(series(dataset, name, panel.y_unit))
+            if pressure > 0.0:
+                found.setdefault(_ABBREVIATIONS.get(name, name.replace("_", " ")), pressure)
     return found
 
 
@@ -176,7 +174,7 @@ def draw_skewt(
     axes.grid(visible=True)
     axes.spines[:].set_visible(True)
     axes.tick_params(top=False)
-    entries, _ = curves(axes, panel, slender(theme))
+    entries = curves(axes, panel, slender(theme))
     put_background(skewed, axes, theme)
     if all(each.keys() == marks.keys() and np.allclose([*each.values()], [*marks.values()]) for each in others):
         put_levels(axes, marks, theme)

@@ -113,8 +113,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     if not across.numeric:
         with style(look):
             for axes in drawing.axes:
-                axes.set_xticks(across.values, across.words, minor=False)
-                axes.set_xticks([], minor=True)
+                axes.set_xticks(across.values, across.words)
                 axes.set_xlabel(across.name)
     return drawing
 
@@ -128,22 +127,23 @@ def _panels(
     dataset: xr.Dataset, names: list[str], settings: list[_Setting], runs: str
 ) -> tuple[xr.Dataset, tuple[Panel, ...]]:
     """Return a sweep as curves along one dimension, and a panel for each headline."""
-    across, other = settings[0], settings[1] if len(settings) > 1 else None
+    across, *others = settings
     coordinate = (across.dim, across.values, {"units": across.unit})
     flat = dataset.drop_vars([*dataset.data_vars, *dataset.coords]).assign_coords({across.dim: coordinate})
     made = []
     for name in names:
         data: list[Line] = []
         theory: list[Line] = []
-        for k, word in enumerate([""] if other is None else other.words):
-            here, stem = (dataset, name) if other is None else (dataset.isel({other.dim: k}), f"{name}__{k}")
+        for k, word in enumerate(others[0].words if others else [""]):
+            here, stem, label = dataset, name, runs
+            for other in others:
+                here, stem, label = dataset.isel({other.dim: k}), f"{name}__{k}", f"{other.name} {word}"
             for suffix in ("", "_se", "_theory"):
                 if name + suffix in dataset:
-                    flat[stem + suffix] = (across.dim, here[name + suffix].values, dict(here[name + suffix].attrs))
-            label = runs if other is None else f"{other.name} {word}"
+                    flat[stem + suffix] = here[name + suffix].variable
             data.append(Line(across.dim, stem, label, error=f"{stem}_se" if f"{stem}_se" in flat else None))
             if f"{stem}_theory" in flat:
-                said = "theory, joined" if other is None or len(other.words) > _MOST_NAMED else f"theory, {label}"
+                said = f"theory, {label}" if others and len(others[0].words) <= _MOST_NAMED else "theory, joined"
                 theory.append(Line(across.dim, f"{stem}_theory", said, "theory"))
         lines = (*data, *_different(theory, flat))
         label, unit = (str(dataset[name].attrs.get(key, "")) for key in ("long_name", "display_units"))

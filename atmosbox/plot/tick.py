@@ -6,14 +6,7 @@ import math
 from itertools import pairwise
 
 from matplotlib.axis import Axis, XAxis
-from matplotlib.ticker import (
-    FixedLocator,
-    FuncFormatter,
-    LogLocator,
-    MaxNLocator,
-    NullFormatter,
-    ScalarFormatter,
-)
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
 
 from atmosbox.plot.curve import power_of_ten
 

@@ -70,7 +70,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         f"green: within {allowed:g} {unit} · recommended: the cheapest run within {WANTED.limits} in all its numbers "
         f"(--accuracy {WANTED.text})"
     )
-    return page((panel,), look, dataset, draw, [], small, str(dataset.attrs.get("title", "")))
+    return page((panel,), look, dataset, draw, [], small)
 
 
 def _draw_runs(

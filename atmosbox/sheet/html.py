@@ -7,10 +7,9 @@ import re
 from collections.abc import Callable, Sequence
 from html import escape
 
-from markdown_it.renderer import RendererHTML
-from markdown_it.token import Token
+from markdown_it.tree import SyntaxTreeNode
 
-from atmosbox.sheet.marks import PARSER, blocks
+from atmosbox.sheet.marks import PARSER, axes, blocks, inside, rows
 from atmosbox.sheet.worksheet import Worksheet
 
 _STYLE = """
@@ -51,32 +50,32 @@ def _elements(sheet: Worksheet) -> list[str]:
     """Return the elements of the page, one for each block of the Markdown."""
     made: list[str] = []
     question, said = "", sheet.said
-    for kind, run in itertools.groupby(blocks(sheet.text), lambda block: block.kind):
+    for kind, run in itertools.groupby(blocks(sheet.text), lambda block: block.type):
         several = list(run)
         if kind == "hr":  # lines to write on: those of a question become one field
             name = said("your answer to question {}").format(question)
             made.append(f'<textarea rows="{len(several)}" aria-label="{name}"></textarea>\n')
             continue
         for block in several:
-            numbered = re.match(r"\*\*(\d+)\.\*\*", block.inside[0].content) if block.inside else None
+            lines = inside(block)
+            numbered = re.match(r"\*\*(\d+)\.\*\*", lines[0].content) if lines else None
             question = numbered[1] if numbered else question
-            if kind == "table_open":
-                made.append(_table([[_inline(token) for token in row] for row in block.rows], said))
-            elif kind == "bullet_list_open":
+            if kind == "table":
+                made.append(_table([[*map(_written, row)] for row in rows(block)], said))
+            elif kind == "bullet_list":
                 name = said("choices of question {}").format(question)
-                made.append(_choices([_inline(token) for token in block.inside], name, ticked=sheet.answers))
-            elif kind == "axes":
-                x, y = map(escape, block.axes)
+                made.append(_choices([*map(_written, lines)], name, ticked=sheet.answers))
+            elif kind == "fence" and block.info == "axes":
+                x, y = map(escape, axes(block))
                 made.append(_axes(x, y, said))
             else:
-                text = PARSER.renderer.render(block.tokens, PARSER.options, {})
-                made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', text))
+                made.append(_FIELD.sub(r'<label>\1: <input type="text"></label>', _written(block)))
     return made
 
 
-def _inline(token: Token) -> str:
-    """Return a line of text as HTML."""
-    return RendererHTML(PARSER).renderInline(token.children or [], PARSER.options, {})
+def _written(node: SyntaxTreeNode) -> str:
+    """Return a block, or a line of text, as HTML."""
+    return str(PARSER.renderer.render(node.to_tokens(), PARSER.options, {}))
 
 
 def _choices(items: Sequence[str], name: str, *, ticked: bool) -> str:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
-from typing import NamedTuple
 from xml.sax.saxutils import escape, quoteattr
 
 from markdown_it import MarkdownIt
-from markdown_it.token import Token
+from markdown_it.tree import SyntaxTreeNode
 
 from atmosbox.errors import ConfigError, shown
 
@@ -46,56 +44,43 @@ def check(text: str) -> None:
             raise ConfigError(f"{shown(text)} begins as a {kind} of Markdown does: begin it with a word")
 
 
-class Block(NamedTuple):
-    """A block of Markdown: a heading, a paragraph, a list, a table, a line to write on."""
-
-    kind: str
-    """The type of its first token, or "axes" for empty axes to draw into."""
-    tag: str
-    tokens: Sequence[Token]
-    inside: list[Token]
-    """The lines of text in it."""
-
-    @property
-    def rows(self) -> list[list[Token]]:
-        """The cells of a table, which has six columns, row by row."""
-        return [self.inside[first : first + 6] for first in range(0, len(self.inside), 6)]
-
-    @property
-    def axes(self) -> tuple[str, str]:
-        """The labels of empty axes, horizontal and vertical."""
-        y, *_, x = self.tokens[0].content.splitlines()
-        return x.partition("> ")[2], y.strip()
-
-
-def blocks(text: str) -> list[Block]:
-    """Return the blocks of a Markdown text.
+def blocks(text: str) -> Sequence[SyntaxTreeNode]:
+    """Return the blocks of a Markdown text: headings, paragraphs, lists, tables, lines to write on.
 
     Examples
     --------
-    >>> [block.kind for block in blocks("# Goal" + chr(10) + "Air rises.")]
-    ['heading_open', 'paragraph_open']
+    >>> [block.type for block in blocks("# Goal" + chr(10) + "Air rises.")]
+    ['heading', 'paragraph']
     """
-    tokens = PARSER.parse(text)
-    starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
-    found = []
-    for first, after in itertools.pairwise([*starts, len(tokens)]):
-        here, inside = tokens[first], [token for token in tokens[first:after] if token.type == "inline"]
-        kind = "axes" if here.type == "fence" and here.info == "axes" else here.type
-        found.append(Block(kind, here.tag, tokens[first:after], inside))
-    return found
+    return SyntaxTreeNode(PARSER.parse(text)).children
 
 
-def as_paragraph(tokens: Sequence[Token], size: float) -> str:
+def inside(block: SyntaxTreeNode) -> list[SyntaxTreeNode]:
+    """Return the lines of text in a block."""
+    return [node for node in block.walk() if node.type == "inline"]
+
+
+def rows(table: SyntaxTreeNode) -> list[list[SyntaxTreeNode]]:
+    """Return the cells of a table, row by row."""
+    return [inside(row) for part in table.children for row in part.children]
+
+
+def axes(block: SyntaxTreeNode) -> tuple[str, str]:
+    """Return the labels of empty axes to draw into, horizontal and vertical."""
+    y, *_, x = block.content.splitlines()
+    return x.partition("> ")[2], y.strip()
+
+
+def as_paragraph(line: SyntaxTreeNode, size: float) -> str:
     """Return a line of Markdown as the text of a paragraph of reportlab.
 
     Examples
     --------
-    >>> as_paragraph(PARSER.parseInline("p<sup>2/7</sup> and `plot`")[0].children, 10.0)
+    >>> as_paragraph(blocks("p<sup>2/7</sup> and `plot`")[0].children[0], 10.0)
     'p<sup rise="3.8" size="7.2">2/7</sup> and <font face="DejaVuSansMono">plot</font>'
     """
     made = []
-    for token in tokens:
+    for token in line.to_tokens()[0].children or ():
         tag = token.content.strip("<>")
         if token.type == "html_inline" and tag in _RISE:
             made.append(f'<{tag} rise="{_RISE[tag] * size:.1f}" size="{SMALLER * size:.1f}">')

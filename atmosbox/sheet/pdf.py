@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from markdown_it.token import Token
+from markdown_it.tree import SyntaxTreeNode
 from reportlab.graphics.shapes import Drawing, Line, PolyLine, String
 from reportlab.lib.colors import Color
 from reportlab.lib.styles import ParagraphStyle as Style
@@ -17,7 +17,7 @@ from reportlab.pdfbase import pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, SimpleDocTemplate, Spacer, Table
 
-from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph, blocks
+from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph, axes, blocks, inside, rows
 from atmosbox.sheet.worksheet import Worksheet
 
 MM = 72.0 / 25.4
@@ -137,13 +137,13 @@ class _Layout:
         self.middle = Style("middle", self.cell, alignment=1)
         self.right = Style("right", self.small, alignment=2)
 
-    def line(self, token: Token, style: Any) -> Flowable:
+    def line(self, line: SyntaxTreeNode, style: Any) -> Flowable:
         """Return a line of text in a style."""
-        return Paragraph(as_paragraph(token.children or (), style.fontSize), style)
+        return Paragraph(as_paragraph(line, style.fontSize), style)
 
     def marked(self, text: str, style: Any) -> Flowable:
         """Return a text with marks in a style."""
-        return self.line(PARSER.parseInline(text)[0], style)
+        return self.line(SyntaxTreeNode(PARSER.parseInline(text)), style)
 
     def table(
         self, rows: Sequence[Sequence[Any]], widths: Sequence[float], style: Sequence[Any], **more: Any
@@ -179,30 +179,30 @@ class _Layout:
         """
         small, pitch = False, self.room * WRITING
         whole = blocks(text)
-        begins = next(place for place, block in enumerate(whole) if (block.kind, block.tag) == ("heading_open", "h2"))
+        begins = next(place for place, block in enumerate(whole) if block.tag == "h2")
         for block in whole[begins:]:
-            inside = block.inside
-            match block.kind:
-                case "heading_open":
-                    small = inside[0].content == self.said("Measure")
-                    yield "heading", self.line(inside[0], self.heading)
-                case "paragraph_open":
-                    kind = "begin" if inside[0].content.startswith("**") else "on"
-                    yield kind, self.line(inside[0], self.small if small else self.body)
-                case "blockquote_open":
-                    yield "on", self.barred(inside)
-                case "bullet_list_open":
-                    yield "on", self.choices([token.content for token in inside])
-                case "axes":
-                    yield "on", self.axes(*block.axes)
+            lines = inside(block)
+            match block.type:
+                case "heading":
+                    small = lines[0].content == self.said("Measure")
+                    yield "heading", self.line(lines[0], self.heading)
+                case "paragraph":
+                    kind = "begin" if lines[0].content.startswith("**") else "on"
+                    yield kind, self.line(lines[0], self.small if small else self.body)
+                case "blockquote":
+                    yield "on", self.barred(lines)
+                case "bullet_list":
+                    yield "on", self.choices([line.content for line in lines])
+                case "fence" if block.info == "axes":
+                    yield "on", self.axes(*axes(block))
                 case "fence":
-                    yield "on", self.marked(f"`{block.tokens[0].content.strip()}`", self.typed)
+                    yield "on", self.marked(f"`{block.content.strip()}`", self.typed)
                 case "hr":
                     yield "on", HRFlowable("100%", 0.4, color=(GREY,) * 3, spaceBefore=pitch, spaceAfter=4.0)
-                case "table_open":
-                    yield "begin", self.measurements(block.rows)
+                case "table":
+                    yield "begin", self.measurements(rows(block))
 
-    def barred(self, lines: Sequence[Token]) -> Flowable:
+    def barred(self, lines: Sequence[SyntaxTreeNode]) -> Flowable:
         """Return an answer, with a vertical bar beside it."""
         style = [("LINEBEFORE", (0, 0), (0, -1), 1.6, (0.0, 0.447, 0.698)), *_padding(TOP=0.5, BOTTOM=0.5, LEFT=0.0)]
         return self.table([[[self.line(line, self.answer) for line in lines]]], (1.0,), style, spaceAfter=4.0)
@@ -213,14 +213,12 @@ class _Layout:
         columns = max(min(len(texts), LONG // max(map(len, texts))), 1)
         columns = 2 if columns == 3 and len(texts) == 4 else columns
         cells: list[Any] = [self.marked(text, self.cell) for text in texts] + [""] * (-len(texts) % columns)
-        style = _padding(TOP=1.0, BOTTOM=2.0, LEFT=14.0)
         rows = [cells[first : first + columns] for first in range(0, len(cells), columns)]
-        return self.table(rows, [1.0 / columns] * columns, style, spaceAfter=3.0)
+        return self.table(rows, [1.0 / columns] * columns, _padding(TOP=1.0, BOTTOM=2.0, LEFT=14.0), spaceAfter=3.0)
 
-    def measurements(self, cells: Sequence[Sequence[Token]]) -> Flowable:
+    def measurements(self, cells: Sequence[Sequence[SyntaxTreeNode]]) -> Flowable:
         """Return the table; a formula is below its quantity, and the lines of one quantity stay together."""
-        size = self.cell.fontSize
-        (what, _, *names), *lines = [[as_paragraph(cell.children or (), size) for cell in row] for row in cells]
+        (what, _, *names), *lines = [[as_paragraph(cell, self.cell.fontSize) for cell in row] for row in cells]
         said = self.said
         headed = said("quantity, with its formula") if what == said("quantity") else said("graph, and which curve")
         rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in (headed, *names)]]

@@ -32,12 +32,7 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
 
 
 def save(
-    sheet: Worksheet,
-    path: str | os.PathLike[str],
-    format: str | None = None,
-    *,
-    paper: str = "a4",
-    force: bool = False,
+    sheet: Worksheet, path: str | os.PathLike[str], format: str | None = None, *, paper: str = "a4", force: bool = False
 ) -> Path:
     """Write a sheet into a file, which `check` has not refused, and return its path.
 

@@ -11,7 +11,6 @@ from atmosbox.errors import Command, ConfigError, Option, Setting, on_command_li
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
 from atmosbox.sheet.sums import Measured, SetNumber
-from atmosbox.sheet.text import Change
 from atmosbox.simulation import runner
 from atmosbox.simulation.verification import check_ledger
 
@@ -104,12 +103,14 @@ class Trial:
         return found
 
 
-def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ...]:
+def trials(first: runner.Prepared, changes: Sequence[dict[str, Any]]) -> tuple[Trial, ...]:
     """Return the runs of a sheet: the first without a change, and one for each change.
+
+    A change has a ``title`` and the settings to ``set``, which make its run differ in one respect from the first.
 
     Examples
     --------
-    >>> fast = Change(title="ten times as fast", set={"ascent": 160})
+    >>> fast = {"title": "ten times as fast", "set": {"ascent": 160}}
     >>> found = trials(runner.prepare("lifting-dry", {}), [fast])
     >>> [(each.letter, each.fact("ascent")) for each in found]
     [('A', 1600.0), ('B', 160.0)]
@@ -117,11 +118,11 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
     default = not first.settings.changed().keys() - {"seed"}
     found = [Trial(_LETTERS[0], "with the default settings" if default else "with these settings", first)]
     for letter, change in zip(_LETTERS[1:], changes, strict=False):
-        settings = type(first.settings).from_user({**first.settings.as_dict(), **change.set})
+        settings = type(first.settings).from_user({**first.settings.as_dict(), **change["set"]})
         if settings == first.settings:
-            same = ", ".join(f"{name}={value}" for name, value in change.set.items())
+            same = ", ".join(f"{name}={value}" for name, value in change["set"].items())
             raise ConfigError(f"Run {letter} of this sheet sets {same}, and so does run A: set run A otherwise.")
-        found.append(Trial(letter, change.title, replace(first, settings=settings)))
+        found.append(Trial(letter, change["title"], replace(first, settings=settings)))
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 from atmosbox import scenarios
 from atmosbox.errors import ConfigError, FileError, Option, shown
@@ -24,13 +24,6 @@ LANGUAGES = {"en": "English", "de": "German"}
 MOST_CHANGES = 3
 SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}
 """The headings of the groups of questions, by their names in the file."""
-
-
-class Change(NamedTuple):
-    """The change of a further run, which differs from the first in one respect, by one or several settings."""
-
-    title: str
-    set: dict[str, Any]
 
 
 def _text(found: Any, place: str) -> str:

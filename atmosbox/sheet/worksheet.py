@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import jinja2
 
@@ -20,7 +20,7 @@ from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.graph_row import graph_rows, until
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, bare, filled, fixed, measured, spelled, theoretical
-from atmosbox.sheet.text import LANGUAGES, SECTIONS, Change, read, text_of, translated
+from atmosbox.sheet.text import LANGUAGES, SECTIONS, read, text_of, translated
 from atmosbox.simulation import runner
 from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
@@ -43,7 +43,7 @@ def left_out(story: str) -> str:
     return found.group() if found else ""
 
 
-class AnyScene:
+class AnyScene(NamedTuple):
     """The object that the text of `WORDS` calls ``scene``.
 
     Parameters
@@ -52,8 +52,7 @@ class AnyScene:
         The runs of the sheet; those that have been made give their headline numbers.
     """
 
-    def __init__(self, runs: Sequence[Trial]) -> None:
-        self.runs = runs
+    runs: Sequence[Trial]
 
     def fact(self, name: str) -> Any:
         """Return a text about the scene by name.
@@ -194,12 +193,10 @@ def worksheet(
     path = text_of(first.module) or WORDS
     words = read(path, language)
     path = translated(path, language)
-    alone = _Filling(path, trials(first, ()))
-    changes = [Change(**alone.all(each, f"change {n}")) for n, each in enumerate(words["change"], 1)]
-    runs = trials(first, changes)
+    runs = trials(first, _Filling(path, trials(first, ())).all(words.pop("change"), "change"))
     due = len(runs) if answers else 0 if words["row"] or lab else 1
     if due and path != WORDS:
-        _Filling(path, runs).sheet(words)  # a mistake is refused before time is spent on a run
+        _Filling(path, runs).all(words, "")  # a mistake is refused before time is spent on a run
     runs = (*execute(runs[:due], progress), *runs[due:])
     return _written(path, words, runs, answers, lab, language)
 
@@ -227,15 +224,11 @@ class _Filling:
         # questions and all other texts except answers may not use results of the runs
         self.before = {run.letter: Trial(run.letter, run.title, run.prepared) for run in runs} | scene
 
-    def sheet(self, words: dict[str, Any]) -> dict[str, Any]:
-        """Return the whole text of a sheet, with its sums worked out."""
-        return {key: self.all(value, key) for key, value in words.items() if key != "change"}
-
     def all(self, value: Any, place: str) -> Any:
         """Return an entry with all sums in it worked out; an error message names the place of the entry."""
         match value:
             case dict():
-                return {key: self.all(each, f"{place}, {key}") for key, each in value.items()}
+                return {key: self.all(each, f"{place}, {key}".removeprefix(", ")) for key, each in value.items()}
             case list() | tuple():
                 return [self.all(each, f"{place} {number}") for number, each in enumerate(value, 1)]
             case str():
@@ -257,7 +250,7 @@ def _written(
     """Return the sheet as Markdown, with what belongs to it."""
     said, first = functools.partial(phrase, language), runs[0].prepared
     differs = bool(first.settings.changed().keys() - {"seed"}) or bool(first.unusual_engine)
-    content = _Filling(path, runs, answers=answers, differs=said(_NOT_HERE) if differs else "").sheet(words)
+    content = _Filling(path, runs, answers=answers, differs=said(_NOT_HERE) if differs else "").all(words, "")
     story = first.module.__doc__ or "" if language == "en" else ""
     content["leaves_out"] = content["leaves_out"] or left_out(story).replace("<", "&lt;")
     for name in ("predict", *SECTIONS) if lab else ():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.errors import AtmosboxError
 from atmosbox.scene import engines
 from atmosbox.scene.setup import Series
 from atmosbox.simulation import runner
@@ -75,7 +75,7 @@ def ways_of(series: Sequence[Series], settings: Mapping[str, Any]) -> tuple[Way,
     Raises
     ------
     SettingError
-        If there are no series or values, or an engine or one of its options is refused.
+        If an engine or one of its options is refused.
 
     Examples
     --------
@@ -92,8 +92,6 @@ def ways_of(series: Sequence[Series], settings: Mapping[str, Any]) -> tuple[Way,
             else:
                 own[row.vary] = value
             found.append(Way(str(engines.choose(engine)), {**settings, **own}, place, float(value)))
-    if not found:
-        raise SettingError("scene", None, "declares nothing to compare", "give its module the tuple series, of Series")
     return tuple(found)
 
 
@@ -146,26 +144,23 @@ def run(scene: str, way: Way, seed: int, progress: Callable[[float, str], None] 
 def _quantities(outcome: Outcome) -> dict[str, Quantity]:
     """Return the errors of a run in its headlines and its curves."""
     quantities: dict[str, Quantity] = {}
-    for headline in outcome.headlines:
+
+    def add(name: str, label: str, unit: str, theory: float, misfit: Any, error: Any) -> None:
+        absolute = unit in _TEMPERATURES
+        if size := 1.0 if absolute else abs(theory):
+            errors = (np.atleast_1d(each / size).tolist() for each in (misfit, error))
+            quantities[name] = Quantity(label, "K" if absolute else "1", float(theory), *errors)
+
+    for each in outcome.headlines:
         # a headline without a statistical error does not depend on the run: for instance theory against a library
-        if headline.theory is None or headline.misfit is None or headline.standard_error == 0.0:
-            continue
-        absolute = headline.unit in _TEMPERATURES
-        if size := 1.0 if absolute else abs(headline.theory):
-            errors = [float(headline.misfit / size)], [float(headline.standard_error / size)]
-            unit = "K" if absolute else "1"
-            quantities[headline.name] = Quantity(headline.label, unit, float(headline.theory), *errors)
-    dataset = outcome.dataset
+        if each.theory is not None and each.misfit is not None and each.standard_error != 0.0:
+            add(each.name, each.label, each.unit, each.theory, each.misfit, each.standard_error)
     for name, beside in PROFILES.items():
-        if name not in dataset or beside not in dataset or f"{name}_se" not in dataset:
-            continue
-        theory = dataset[beside].values
-        absolute = dataset[name].attrs.get("units") in _TEMPERATURES
-        # the difference is divided by the mean of the curve, because a curve may fall to zero
-        mean = float(np.mean(np.abs(theory)))
-        size = 1.0 if absolute else mean
-        errors = ((dataset[name].values - theory) / size).tolist(), (dataset[f"{name}_se"].values / size).tolist()
-        quantities[name] = Quantity(f"profile of {name.replace('_', ' ')}", "K" if absolute else "1", mean, *errors)
+        if {name, beside, f"{name}_se"} <= set(outcome.dataset):
+            value, theory, error = (outcome.dataset[part] for part in (name, beside, f"{name}_se"))
+            # the difference is divided by the mean of the curve, because a curve may fall to zero
+            label, mean = f"profile of {name.replace('_', ' ')}", float(np.mean(np.abs(theory.values)))
+            add(name, label, value.attrs.get("units", ""), mean, value.values - theory.values, error.values)
     return quantities
 
 
@@ -232,14 +227,11 @@ def repeat(
         seconds[k] = clock() - start
         ended()
 
-    def waits(k: int) -> tuple[int, float]:
-        return len(results[k]), seconds[k]
-
     while fit := [
         k for k in range(len(results))
         if not failed[k] and len(results[k]) < MOST_RUNS and 1.1 * seconds[k] < left()
     ]:  # fmt: skip
-        k = min(fit, key=waits)
+        k = min(fit, key=lambda k: (len(results[k]), seconds[k]))
         attempt(k, left() if seconds[k] else min(FIRST_SHARE * budget, left()))
     for k, done in enumerate(results):
         if not done and not failed[k]:

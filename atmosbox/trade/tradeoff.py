@@ -98,12 +98,12 @@ def measure(
     """
     module = scenarios.load(scene)
     series = getattr(module, "series", ())
-    if ways is None and not series:
-        raise SettingError("scene", scene, "declares nothing to compare", "give its module the tuple series, of Series")
     if not (math.isfinite(budget) and 1.0 <= budget <= 1e6):
         raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", Option("budget", "40s"))
     module.Settings.from_user(settings or {})
-    ways = tuple(ways) if ways is not None else ways_of(series, settings or {})
+    ways = tuple(ways_of(series, settings or {}) if ways is None else ways)
+    if not ways:
+        raise SettingError("scene", scene, "declares nothing to compare", "give its module the tuple series, of Series")
     first = _first_alike(ways, module.Settings)
     own = sorted(set(first))
     tell = progress or (lambda share, word: None)
@@ -236,7 +236,7 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
     if reference is not None:
         alike = [way.settings.get("plane") == ways[reference].settings.get("plane") for way in ways]
         cost, missed = cpu / cpu[reference], np.where(alike, 1.0 - rate / rate[reference], np.nan)
-    along: dict[str, tuple[Any, str, str | None]] = {
+    along: dict[str, tuple[Any, str, str]] = {
         "wall_seconds": (each(np.median, "wall_seconds"), "wall-clock time of a run", "s"),
         "engine_seconds": (cpu, "processor time that the engine takes in a run", "s"),
         "cost": (cost, "processor time of the engine as a multiple of that in the reference", "1"),
@@ -245,12 +245,12 @@ def _dataset(ways: Sequence[Way], trials: Sequence[Sequence[Trial]], left_out: S
         "ledger": (each(max, "ledger"), "largest residual of the energy budget", "1"),
         "missed": (missed, "share of the collisions of the reference that are missing", "1"),
         "escaped": (each(max, "escaped"), "most molecules outside the box", "1"),
-        "left_out": (list(left_out), "why there is no run, or no more", None),
+        "left_out": (list(left_out), "why there is no run, or no more", ""),
         "series": ([way.series for way in ways], "number of the series", "1"),
         "value": ([way.value for way in ways], "what varies within the series", "1"),
-        "engine": ([way.engine for way in ways], "engine and its options", None),
-        "settings": ([json.dumps(dict(way.settings)) for way in ways], "settings, as JSON", None),
-        "runs": ([json.dumps(done) for done in trials], "the runs so far, as JSON", None),
+        "engine": ([way.engine for way in ways], "engine and its options", ""),
+        "settings": ([json.dumps(dict(way.settings)) for way in ways], "settings, as JSON", ""),
+        "runs": ([json.dumps(done) for done in trials], "the runs so far, as JSON", ""),
     }
     data: dict[str, Any] = {
         name: ("configuration", values, {"long_name": text} | ({"units": unit} if unit else {}))

@@ -65,7 +65,7 @@ def rise(
             **parcel_facts(scale, sides),
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
-            "crossing" if _climbs(height) else "ascent": f"in {duration * scale.time * 1e9:.3g} ns",
+            "ascent" if climbs else "crossing": f"in {duration * scale.time * 1e9:.3g} ns",
             **rainy,
             "known errors": f"theory is {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
         },
