@@ -67,36 +67,6 @@ def lab(
 
 
 _FRAMES = 12  # after which the still picture is drawn
-_PAGE = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>An atmosphere in a box</title>
-<style>
-body { margin: 0 auto; max-width: 75rem; padding: 1rem; font: 1rem/1.45 system-ui, sans-serif; }
-body { color: #1a1f26; background: #f4f6f9; }
-main { display: grid; grid-template-columns: repeat(auto-fill, minmax(17rem, 1fr)); gap: 1rem; }
-a { display: block; padding: 0.75rem; color: inherit; text-decoration: none; background: #fff; }
-a { border: 1px solid #d8dee6; border-radius: 0.75rem; }
-a:hover, a:focus-visible { border-color: #0072b2; }
-img { display: block; width: 100%; aspect-ratio: 4 / 3; object-fit: contain; }
-h2 { margin: 0.5rem 0 0.25rem; font-size: 1.125rem; color: #0072b2; }
-p { margin: 0; }
-h1 + p { margin-bottom: 1rem; }
-small { color: #566270; }
-</style>
-</head>
-<body>
-<h1>An atmosphere in a box</h1>
-<p>Molecules collide, and meteorology emerges. The scenes stand in the order of teaching; each runs in this browser.</p>
-<main>
-@@SCENES@@
-</main>
-<p><small>@@BY@@</small></p>
-</body>
-</html>
-"""
 
 
 def save_all(
@@ -112,6 +82,7 @@ def save_all(
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.lab import save_lab
     from atmosbox.lab.wasm_module import SCENES
+    from atmosbox.page.document import packaged
     from atmosbox.simulation.preparation import prepare
     from atmosbox.version import __version__
 
@@ -134,7 +105,11 @@ def save_all(
             f'<a href="{pages[name].name}"><img alt="" src="data:image/png;base64,{_still(prepared)}">'
             f"<h2>{title}</h2><p>{html.escape(told.sentence)}</p><small>{html.escape(about)}</small></a>"
         )
-    text = _PAGE.replace("@@SCENES@@", "\n".join(cards)).replace("@@BY@@", f"Made by atmosbox {__version__}.")
+    text = (
+        packaged("web", "index.html")
+        .replace("@@SCENES@@", "\n".join(cards))
+        .replace("@@BY@@", f"Made by atmosbox {__version__}.")
+    )
     write_whole(index, text.encode("utf-8"))
     return [index, *pages.values()]
 

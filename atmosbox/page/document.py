@@ -84,7 +84,7 @@ def lab_page(
     served : bool
         Whether the page may ask the server that it comes from for plans of boxes with other settings, at ``/plan``.
     """
-    engine = "\n".join(_text("web", name) for name in ("lab_machine.js", "lab_worker.js"))
+    engine = "\n".join(packaged("web", name) for name in ("lab_machine.js", "lab_worker.js"))
     data = [
         *([_block("plans", "text/plain", "/plan")] if served else []),
         _block("starts", "application/json", _json(starts)),
@@ -98,7 +98,7 @@ def lab_page(
 @functools.cache
 def words(language: str) -> dict[str, Any]:
     """Return the texts of the page in a language: see ``language/en.toml``."""
-    return tomllib.loads(_text("language", f"{language}.toml"))
+    return tomllib.loads(packaged("language", f"{language}.toml"))
 
 
 def phrase(language: str, text: str) -> str:
@@ -127,9 +127,9 @@ def _document(
 ) -> str:
     """Return the HTML document that contains some data."""
     libraries = ("three", "uplot", "lean-qr") if entry == "lab" else ("three", "uplot")
-    scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
-    scripts += [_module("qr.mjs", _text("vendor", "lean-qr", "nano.mjs"))] if entry == "lab" else []
-    scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
+    scripts = [_module(name, packaged("vendor", "three", name)) for name in _THREE]
+    scripts += [_module("qr.mjs", packaged("vendor", "lean-qr", "nano.mjs"))] if entry == "lab" else []
+    scripts += [_module(name, packaged("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
     first = "en" if language == "auto" else language
     said = words(first)["page"]
     tables = {
@@ -145,18 +145,18 @@ def _document(
         "ENTRY": entry,
         "CONNECT": "'self'" if served else "'none'",
         "ALSO": " 'wasm-unsafe-eval'" if entry == "lab" else "",
-        "STYLE": "\n".join((_text("vendor", "uplot", "uPlot.min.css"), _text("web", "theme.css"))),
-        "UPLOT": _inline(_text("vendor", "uplot", "uPlot.iife.min.js")),
+        "STYLE": "\n".join((packaged("vendor", "uplot", "uPlot.min.css"), packaged("web", "theme.css"))),
+        "UPLOT": _inline(packaged("vendor", "uplot", "uPlot.iife.min.js")),
         "MODULES": "\n".join(scripts),
         "DATA": "\n".join(data),
-        "BOOT": _inline(_text("web", "boot.js")),
-        "LICENCES": "\n".join(f"{name}:\n{_text('vendor', name, 'LICENSE')}" for name in libraries),
+        "BOOT": _inline(packaged("web", "boot.js")),
+        "LICENCES": "\n".join(f"{name}:\n{packaged('vendor', name, 'LICENSE')}" for name in libraries),
     }
-    pieces = _text("web", "page.html").split("@@")
+    pieces = packaged("web", "page.html").split("@@")
     return "".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces))
 
 
-def _text(*place: str) -> str:
+def packaged(*place: str) -> str:
     """Return a file of the package."""
     return resources.files("atmosbox.page").joinpath(*place).read_text(encoding="utf-8")
 
