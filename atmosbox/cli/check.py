@@ -15,7 +15,7 @@ from atmosbox.text.table import table
 def check(file: RunFile, as_json: Json = False) -> None:
     """Verify the physics in a file.
 
-    Is the energy budget closed, does the run agree with theory? The exit status is 3 if anything fails.
+    Is the energy budget closed, and does the run agree with theory? The exit status is 3 if anything fails.
     """
     from atmosbox.file.netcdf import read
     from atmosbox.simulation.verification import verify

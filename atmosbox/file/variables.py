@@ -228,7 +228,7 @@ saturation_vapor_pressure | Pa | time: mean | saturation vapour pressure at the 
 relative_humidity | 1 | time: mean standard | relative humidity
 humidity_mixing_ratio | kg kg-1 | time: mean standard | mass of vapour per mass of dry air
 cloud_liquid_water_mixing_ratio | kg kg-1 | time: mean standard | mass of liquid water per mass of dry air
-largest_haze_mixing_ratio | kg kg-1 | time: mean | largest mass of liquid water in haze per mass of dry air
+largest_haze_mixing_ratio | kg kg-1 | time: mean | mixing ratio of liquid water above which haze is a cloud
 rain_mixing_ratio | kg kg-1 | time: mean | mass of water that has rained out so far per mass of dry air
 liquid_temperature | K | time: mean | temperature of the liquid water
 drop_area | m2 | time: mean | total area at which molecules hit drops

@@ -171,11 +171,11 @@ def lifting() -> list[list[str]]:
          f"{rounded(hurry)} K too warm, after an hour {rounded(hour)} K"],
         ["vibration", f"it would make air {rounded(vibrating)} K warmer at {top / 100.0:.0f} hPa"],
         ["attraction", f"it moves the adiabat of air by {rounded(attracted)} K"],
-        ["the true size of molecules", f"their excluded volume moves the adiabat by "
-         f"{rounded(spheres_arrive(si.diameter, start, bottom, top, 5))} K, that of molecules of the true size by "
+        ["the true size of molecules", f"as simulated, their excluded volume moves the adiabat by "
+         f"{rounded(spheres_arrive(si.diameter, start, bottom, top, 5))} K, with the true size by "
          f"{rounded(spheres_arrive(DRY_AIR.diameter, start, bottom, top, 5))} K"],
-        ["rotation exchanges energy slowly", f"in air after {rounded(slow)} collisions, here at each; in so fast an "
-         f"ascent this would add {rounded(delayed)} K, in an hour nothing"],
+        ["rotation exchanges energy slowly", f"in air it takes {rounded(slow)} collisions, here one; this would add "
+         f"{rounded(delayed)} K in so fast an ascent, nothing in an hour"],
     ]  # fmt: skip
 
 
