@@ -423,7 +423,7 @@ def run(
     diameter: float | str = 1.3,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""A parcel of air rises through a sounding, and may become a thunderstorm.
+    r"""A parcel of air rises through a sounding, and may become buoyant.
 
     sounding: file of a sounding, or weisman-klemp for the analytic one; any text
     molecules: number of molecules in the parcel; 200 to 1000000

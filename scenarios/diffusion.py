@@ -12,7 +12,7 @@ Modelled: hard spheres of one size between smooth end walls; the other sides are
 on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that
 thousands of them make the box many mean free paths long. In theory D is that of Chapman and Enskog for a thin gas,
 divided by Enskog's contact value, plus 2 % because collisions in a denser gas are correlated. Gases of unlike masses
-also conduct heat as they mix, and the light one begins to spread first; theory then is the Boltzmann equation.
+also carry heat as they mix, and the light one begins to spread first; theory then is the Boltzmann equation.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""A parcel of air rises through a sounding, and may become a thunderstorm.
+"""A parcel of air rises through a sounding, and may become buoyant.
 
 Air from the ground is lifted through a sounding: measured by a balloon or, by default, analytic. As long as the parcel
 is denser than the environment, it must be pushed. From the level of free convection up to the equilibrium level it is
