@@ -33,8 +33,8 @@ The rules that can be chosen:
 ``EVERY_OVERLAP``
     cells; also a pair that already moves apart exchanges its momentum, and so turns back: a common mistake. Alone it
     parts a step later; but if a third molecule comes between, it stays together and collides in every step, the longer
-    a run the more such pairs. At :math:`\delta` = 0.01 a thin gas has a tenth too many collisions in its first ten
-    units of time, and more than half too many later; the energy does not show it.
+    a run the more such pairs. There are then more than one and a half times as many collisions as theory says; the
+    energy does not show it.
 
 ``LOOK`` only finds the deepest overlap, before the first step.
 """
