@@ -1,7 +1,5 @@
 """The command ``animate``: film a run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Any, Literal
 

@@ -1,7 +1,5 @@
 """The Typer application that all commands belong to, and the layout of its help."""
 
-from __future__ import annotations
-
 import copy
 import functools
 import inspect

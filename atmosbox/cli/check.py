@@ -1,7 +1,5 @@
 """The command ``check``: verify the physics in a file."""
 
-from __future__ import annotations
-
 import typer
 
 from atmosbox.cli.application import command

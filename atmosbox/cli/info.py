@@ -1,7 +1,5 @@
 """The command ``info``: the description and the settings of a scene."""
 
-from __future__ import annotations
-
 import shlex
 from typing import Annotated
 

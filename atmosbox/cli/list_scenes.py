@@ -1,7 +1,5 @@
 """The command ``list``: list the scenes."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from atmosbox.cli.application import command

@@ -1,7 +1,5 @@
 """The command ``live``: open the page in which a scene runs, and make a plan whenever a setting is changed there."""
 
-from __future__ import annotations
-
 import os
 import secrets
 import sys

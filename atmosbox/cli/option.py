@@ -1,7 +1,5 @@
 """The options that several commands share, each declared once, and the names of output files."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The command ``plot``: the figure of a run."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from atmosbox.cli.application import command

@@ -1,7 +1,5 @@
 """The command ``prepare``: compile the engine in advance, so that the first run of a scene need not wait."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from typing import Annotated

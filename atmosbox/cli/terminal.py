@@ -1,7 +1,5 @@
 """How an error ends a command: with one sentence on stderr and an exit status."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import os

@@ -1,7 +1,5 @@
 """What was typed: NAME=VALUE is a setting, and what cannot be understood is answered with one sentence."""
 
-from __future__ import annotations
-
 import contextlib
 import re
 import shlex

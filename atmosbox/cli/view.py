@@ -1,7 +1,5 @@
 """The command ``view``: the molecules of a run on a page."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

@@ -1,7 +1,5 @@
 """A run as Python prints it: first its results with theory beside them; and its progress in a notebook."""
 
-from __future__ import annotations
-
 import contextlib
 import html
 import sys

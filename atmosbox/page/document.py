@@ -1,7 +1,5 @@
 """The page as one HTML document that contains the libraries, our scripts, and the data of the runs."""
 
-from __future__ import annotations
-
 import functools
 import html
 import json

@@ -5,8 +5,6 @@ a number of molecules. The engine does not follow these molecules. The page draw
 clumps, a pool and rain as layers, at places of its own choice, and tells the reader so.
 """
 
-from __future__ import annotations
-
 import base64
 import struct
 import zlib

@@ -27,8 +27,6 @@ value: what only passes the value is not there. What a class may draw as its pre
 begins the box again with its settings, and those of the page for the rest.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The graphs of a scene as data for the page: their variables, and the conversion from SI to the units shown."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple

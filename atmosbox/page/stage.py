@@ -1,7 +1,5 @@
 """The stage: what the page gets once of a run, namely the box, how molecules are drawn, the graphs and the texts."""
 
-from __future__ import annotations
-
 import math
 from collections import namedtuple
 from collections.abc import Iterable, Sequence

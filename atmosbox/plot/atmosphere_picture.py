@@ -1,7 +1,5 @@
 """The atmosphere around a lifted parcel: ground or mountains, the parcel on its path, its cloud and its rain."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The text of a figure: headline numbers, labels of the axes, and the footer with the provenance of the run."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any, NamedTuple

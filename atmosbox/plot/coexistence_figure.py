@@ -4,8 +4,6 @@ It shows a sweep over the temperature. Each run has measured by itself a vapour 
 must have against 1/T at its temperature. The lines have these slopes: nothing is fitted.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

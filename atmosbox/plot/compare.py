@@ -1,7 +1,5 @@
 """Comparison of runs: the settings that differ, the differences of their headline numbers, and one figure."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

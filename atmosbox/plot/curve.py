@@ -1,7 +1,5 @@
 """From a line of a panel to the numbers of its curve, in the units that are shown."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The discs of a planar scene in their box, drawn to size and coloured by their speed; and the colour bar of a box."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The curves of a panel: lines with bands, points with error bars, steps of a histogram; and the limits of its axes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, cast
 

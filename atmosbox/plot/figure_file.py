@@ -1,7 +1,5 @@
 """A figure as a file: the same run gives the same bytes, and a file appears only when it is complete."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable, Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """Air that turns over: its temperature in colours and its wind as arrows, at instants above the panels."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ of text that break at the end of a panel, as many columns of a legend as fit, ti
 page that grows with its text.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from itertools import chain

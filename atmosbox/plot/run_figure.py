@@ -1,7 +1,5 @@
 """The figure of a run: its panels, its title and its provenance on one page; with its box above them if wanted."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial

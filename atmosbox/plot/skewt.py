@@ -1,7 +1,5 @@
 """A parcel in its environment on the diagram that forecasters use: the skew-T of MetPy, with CAPE and CIN shaded."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The figure of a sweep: how the headlines of a scene depend on the settings that were varied."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

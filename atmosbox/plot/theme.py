@@ -1,7 +1,5 @@
 """Sizes and colours of figures, in two themes: one for a page of notes, one for a slide."""
 
-from __future__ import annotations
-
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Ticks of the axes: matplotlib's locators, plain numbers, and a common power of ten for the label."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

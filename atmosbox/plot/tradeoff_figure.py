@@ -3,8 +3,6 @@
 One graph, readable from the last row of a lecture hall: the error of a single run against its processor time.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

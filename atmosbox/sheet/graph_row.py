@@ -1,7 +1,5 @@
 """The table of a sheet that is done without commands: values that students read off the graphs of a running page."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A sheet as a web page, which a screen reader can read and in which answers can be typed."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Callable, Sequence

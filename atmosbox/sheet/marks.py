@@ -1,7 +1,5 @@
 """The marks of a text: those of Markdown within a line, and superscripts and subscripts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from xml.sax.saxutils import escape, quoteattr
 

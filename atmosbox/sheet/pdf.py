@@ -1,7 +1,5 @@
 """A sheet as PDF: parts that belong together stay on one page, and the same sheet gives the same bytes."""
 
-from __future__ import annotations
-
 import functools
 import io
 import itertools

@@ -1,7 +1,5 @@
 """A sheet as a file: the same sheet gives the same bytes, and a file appears only when it is complete."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A run of a sheet: the command for it, its settings, and its results."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

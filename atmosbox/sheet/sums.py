@@ -7,8 +7,6 @@ The file of a sheet is data and runs no code. A sum is read as an expression of 
 Numbers and units have a true minus sign, superscripts, and only the digits that are known.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 import operator

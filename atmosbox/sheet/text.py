@@ -4,8 +4,6 @@ The file for ``my_scene.py`` is ``my_scene.sheet.toml``. It is data and runs no 
 `sums`) and marks (see `marks`). ``my_scene.sheet.de.toml`` has its texts in German.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import tomllib

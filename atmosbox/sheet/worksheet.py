@@ -1,7 +1,5 @@
 """From the text and the runs of a sheet to its Markdown, by the template ``sheet.md.jinja``."""
 
-from __future__ import annotations
-
 import functools
 import os
 import re

@@ -3,8 +3,6 @@
 Runs are made in this process, in processes of this machine, or on a Dask cluster.
 """
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 import os

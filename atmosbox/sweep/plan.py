@@ -1,7 +1,5 @@
 """What a sweep runs: the settings that vary, the points of their grid, its members, and the seed of each."""
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import math

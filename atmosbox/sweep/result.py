@@ -1,7 +1,5 @@
 """All runs of a sweep as one dataset, whose dimensions are the settings that vary."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The progress of a run: on a terminal a bar with the remaining time, elsewhere a line for a step that takes long."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

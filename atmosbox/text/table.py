@@ -1,7 +1,5 @@
 """Columns and numbers: how a table fits a terminal, and with how many digits a measurement is shown."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import textwrap

@@ -1,7 +1,5 @@
 """Speed against accuracy: a scene on all engines and settings, each as often as a budget of time allows."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import math
