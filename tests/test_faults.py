@@ -97,7 +97,7 @@ def test_an_odd_environment_changes_no_number(usual, tmp_path, flags, variables)
 
 
 def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, monkeypatch):
-    """Checkpoints, locks, the bar and the expected time use a clock that cannot be set."""
+    """Checkpoints and the progress bar use a clock that cannot be set."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     monkeypatch.setattr(runner, "_BREATH", 0.0)
     draw, now = random.Random(3), time.time()

@@ -7,7 +7,7 @@ SI units.
 **Rounding.** The numbers that a scene sets up come from powers, exponentials and logarithms, which every C library, and
 numpy on every processor, rounds differently in the last of their 53 digits. From the same numbers the engine repeats a
 run to the last bit. So it is given numbers of 32 binary digits, which do not depend on the machine: a difference in
-digit 53 changes digit 32 once in half a million numbers, and a change of 1 in 4e9 is too small to matter to a scene.
+digit 53 changes digit 32 once in two million numbers, and a change of 1 in 4e9 is too small to matter to a scene.
 """
 
 from __future__ import annotations
