@@ -105,11 +105,6 @@ def new_columns(number: int, many: int) -> list[Any]:
     Each begins at a line of the cache, so that eight numbers that are read together are one line. Each begins at
     another place within a page than the one before it, as data at the same place of different pages compete for the
     same few lines.
-
-    Examples
-    --------
-    >>> [column.ctypes.data % 64 for column in new_columns(1000, 2)]
-    [0, 0]
     """
     stride = -(-number // _PAGE) * _PAGE + _PAGE // 8 + _LINE
     room = np.empty(many * stride + _LINE)
@@ -145,8 +140,6 @@ def new_grid(numbers: tuple[int, int, int], threads: int) -> Grid:
 def share_of(thread, threads, number):
     """Return the first slot of a thread's share of the molecules, and the slot after its last: whole blocks.
 
-    Examples
-    --------
     >>> [share_of(t, 2, 5000) for t in range(2)]
     [(0, 2048), (2048, 5000)]
     """
@@ -217,11 +210,8 @@ def reserve_places(grid, cells):
 def share_cells(first, cells, cut):
     """Divide the cells into stretches, one for each thread, with about the same number of possible pairs.
 
-    So molecules that are near each other in memory are computed by the same thread when they move and collide.
-
-    Examples
-    --------
-    Ten molecules in one cell are more work than ten molecules in ten cells:
+    So molecules that are near each other in memory are computed by the same thread when they move and collide. Ten
+    molecules in one cell are more work than ten molecules in ten cells:
 
     >>> cut = np.zeros(3, np.int64)
     >>> share_cells(np.array([0, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]), 11, cut)

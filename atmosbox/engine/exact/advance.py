@@ -39,8 +39,6 @@ def whole_epochs(ahead, length):
 
     The result depends on events alone, not on where a run is cut into pieces.
 
-    Examples
-    --------
     >>> whole_epochs(70.0, 32.0), whole_epochs(31.0, 32.0), whole_epochs(math.inf, 32.0)
     (64.0, 32.0, 0.0)
     """
