@@ -14,7 +14,9 @@ from atmosbox.engine.core.jit import kernel
 def time_to_leave(x, v, low, high):
     """Return when a molecule in uniform motion leaves an interval [time from now], and at which end: 1 for the upper.
 
-    The lower end is 0. The time is ``inf`` if it stands still. One length below the upper end at half a length per time:
+    The lower end is 0. The time is ``inf`` if it stands still.
+
+    One length below the upper end at half a length per time:
 
     >>> time_to_leave(2.0, 0.5, 0.0, 3.0)
     (2.0, 1)
@@ -30,8 +32,8 @@ def time_to_leave_in_gravity(z, v, low, high, gravity):
     r"""Return when a molecule in free fall leaves a layer [time from now], and at which end: 1 for the upper.
 
     It reaches the upper end if :math:`v^2 > 2 g h`, at :math:`t = 2 h / (v + \sqrt{v^2 - 2 g h})`; else it falls out of
-    the lower end (0), at the later root of the same parabola. Both roots are written as sums of numbers of the same sign,
-    so that no digits are lost by cancellation.
+    the lower end (0), at the later root of the same parabola. Both roots are sums of numbers of the same sign, so that
+    no digits are lost by cancellation.
 
     Thrown upward at unit speed in unit gravity from the floor it is back after two units of time:
 
