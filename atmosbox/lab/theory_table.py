@@ -48,8 +48,8 @@ Array = NDArray[np.float64]
 def short_run(prepared: Prepared) -> xr.Dataset:
     """Return the measurements after three frames, as input for the scene's theory.
 
-    A scene is refused if the engine cannot go on, or if its modes change in these frames, because too many molecules crowd
-    together for a page.
+    A scene is refused if the engine cannot go on, or if its modes change in these frames, because too many molecules
+    crowd together for a page.
     """
     setup = build(prepared)
     parcel: Any = setup.parcel
