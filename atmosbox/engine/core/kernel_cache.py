@@ -1,9 +1,8 @@
 """Where the machine code of kernels is kept, and reports of the compilations that really happen.
 
-numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel
-calls *in another file*, or a constant imported from one, and numba still uses the old machine code. Here the
-cache is kept under a digest of all the engine's code, so that any edit of code, or a newly installed version,
-starts a new cache, and an edited comment does not. That is right only because the engine imports nothing of
+numba's own disk cache watches only the file that holds a function, not the other files that it calls or whose constants
+it uses. Here the cache is kept under a digest of all the engine's code, so that any edit of code, or a newly installed
+version, starts a new cache, and an edited comment does not. That is right only because the engine imports nothing of
 atmosbox from outside its folder, which a test enforces.
 """
 

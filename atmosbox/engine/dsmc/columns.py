@@ -1,13 +1,10 @@
 """Molecules as a structure of arrays, sorted into cells, for an engine that draws collision partners at random.
 
 Each property of all molecules is one array (a column), so that a loop over molecules reads memory in order and the
-compiler can compute eight of them at once. The molecules of each cell must be known: in every step they are *counted*
-by cell and an index of them is written in the order of cells (a counting sort that keeps their order within a cell).
-Now and then the columns themselves are put in that order, so that the molecules of a cell are near each other in
-memory, too.
-
-Every thread takes a share of the molecules, one stretch of the columns. It counts its own, and its places in
-the index follow those of the threads before it: the index is the same for any number of threads.
+compiler can compute eight of them at once. In every step molecules are *counted* by cell and an index of them is
+written in the order of cells (a counting sort that keeps their order within a cell); now and then the columns
+themselves are put in that order. Every thread counts one stretch of the columns, and its places in the index follow
+those of the threads before it: the index is the same for any number of threads.
 """
 
 import functools

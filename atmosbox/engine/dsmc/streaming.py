@@ -1,12 +1,11 @@
-r"""A step of free flight for many molecules at once, with all wall hits on the way.
+"""A step of free flight for many molecules at once, with all wall hits on the way.
 
-Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark
-those that need more work because of a wall. There are two cases. Smooth walls at rest that face each other only
-mirror: flight along their axis goes on beyond the wall and is *folded* back, and only the impulse remains to be
-tallied. Before any other wall a molecule *waits*: it flies last, alone, from wall to wall. Each
-hit happens at its exact time and place, and a molecule emitted by a heat bath flies for *the rest of the step*. If it
-were emitted at the end of the step instead, there would be too few slow molecules near the wall, and the gas would be
-too hot.
+Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark those that
+need more work because of a wall. Between smooth walls at rest that face each other flight goes on beyond the wall and
+is *folded* back; only the impulse remains to be tallied. Before any other wall a molecule *waits*: it flies last,
+alone, from wall to wall. Each hit happens at its exact time and place, and a molecule emitted by a heat bath flies for
+*the rest of the step*. If it were emitted at the end of the step instead, there would be too few slow molecules near
+the wall, and the gas would be too hot.
 """
 
 import math
