@@ -101,13 +101,7 @@ class LabBox(NamedTuple):
 
 
 def _refuse(prepared: Prepared, setup: Setup) -> None:
-    """Refuse a box for which there is no module.
-
-    Raises
-    ------
-    SettingError
-        If there is no module for the box; the message says what to use instead.
-    """
+    """Refuse a box for which there is no module; the message says what to use instead."""
     parcel: Any = setup.parcel
     unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
     if not _is_measured(instrument_of(setup, Flow), instrument_of(setup, Layers), parcel):
@@ -134,15 +128,8 @@ def _is_measured(flow: Any, layers: Any, parcel: Any) -> bool:
 
 
 def lab_box(prepared: Prepared) -> LabBox:
-    """Return the box of a scene for a page.
+    """Return the box of a scene for a page; refuse one that cannot be built, or cannot run in a page.
 
-    Raises
-    ------
-    AtmosboxError
-        If the box cannot be built, or cannot run in a page.
-
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> lab_box(prepare("temperature", {"molecules": 20})).gauges.speeds.size
     58

@@ -38,18 +38,10 @@ Works = Mapping[str, Mapping[str, Any]]
 class Image(NamedTuple):
     """The memory of a module before its first call.
 
-    Attributes
-    ----------
-    pieces : list of (int, bytes)
-        The pieces of memory that are not zero, with their addresses.
-    size : int
-        Number of bytes, including those before ``BASE``.
-    blocks : dict of str to int
-        Address of the arguments of each kernel.
-    slots : dict of str to dict of str to int
-        Address of each number that a page may set, by its path: the name of an argument of a kernel, or of its part.
-    arrays : dict of str to (int, int, str)
-        Address, number of elements and type of each array, by the path of its name: "gas.molecules".
+    ``pieces`` are those that are not zero, with their addresses; ``size`` is the number of bytes, including those
+    before ``BASE``. ``blocks`` has the address of the arguments of each kernel, ``slots`` for each kernel the address
+    of each number that a page may set, by its path: the name of an argument, or of its part. ``arrays`` has address,
+    number of elements and type of each array, by the path of its name: "gas.molecules".
     """
 
     pieces: list[tuple[int, bytes]]
@@ -100,15 +92,8 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
 
 
 def image(works: Works) -> Image:
-    """Return the memory image for these kernels.
+    """Return the memory image for these kernels: their arguments, by the names of both.
 
-    Parameters
-    ----------
-    works
-        The arguments of the kernels, by the names of both.
-
-    Examples
-    --------
     >>> made = image({"scale": {"values": np.arange(3.0), "by": 2}})
     >>> made.blocks["scale"] % 64, made.slots["scale"], made.arrays
     (0, {'by': 131448}, {'values': (131072, 3, 'float64')})
@@ -149,15 +134,7 @@ def image(works: Works) -> Image:
 
 
 def arguments(box: LabBox) -> dict[str, dict[str, Any]]:
-    """Return the arguments of the kernels of a box, by the names of the kernels and of their parameters.
-
-    Examples
-    --------
-    >>> from atmosbox.lab.box import lab_box
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> {name: list(given) for name, given in arguments(lab_box(prepare("temperature", {}))).items()}["warm_walls"]
-    ['gas', 'book', 'first', 'last', 'kT']
-    """
+    """Return the arguments of the kernels of a box, by the names of the kernels and of their parameters."""
     numbers = {"until": 0.0, "most": 0, "seed": 0, "towards": 0.0, "kT": 1.0, "strength": 1.0, "share": 1.0}
     first, last = box.warmed
     given = box._asdict() | numbers | {"begun": box.start, "gravity": 0.0, "first": first, "last": last}

@@ -27,15 +27,8 @@ def lab_text(
     others: bool = True,
     progress: Callable[[float, str], None] = lambda share, word: None,
 ) -> str:
-    """Return the HTML of the page that `save_lab` writes.
+    """Return the HTML of the page that `save_lab` writes; refuse a scene that cannot run in a page.
 
-    Raises
-    ------
-    AtmosboxError
-        If the scene cannot run in a page.
-
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> "WebAssembly" in lab_text(prepare("temperature", {"molecules": 20}), others=False)
     True

@@ -64,15 +64,8 @@ _AT_REST = "layer_temperature_conduction"
 
 
 def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
-    """Return the plan of the page of a scene, the memory of its engine, and the box.
+    """Return the plan of the page of a scene, the memory of its engine, and the box; refuse what cannot run in a page.
 
-    Raises
-    ------
-    AtmosboxError
-        If the box cannot be built, or cannot run in a page.
-
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> plan, memory, _ = lab_plan(prepare("temperature", {"molecules": 20}))
     >>> plan["frames"], plan["size"] == memory.size, sorted(plan["knobs"])

@@ -38,19 +38,12 @@ _PATIENCE = 20.0  # s that a browser may take to send a request
 
 
 def allowed(host: str | None, origin: str | None) -> bool:
-    """Return whether a request comes from our own page.
+    """Return whether a request with these headers Host and Origin comes from our own page.
 
-    A page of another site can make the browser send requests to this computer; such a request has the other site in
-    its header Origin. A domain name of another site can also be made to point to this computer; therefore only numeric
+    A page of another site can make the browser send requests to this computer; such a request has the other site in its
+    header Origin. A domain name of another site can also be made to point to this computer; therefore only numeric
     addresses and localhost are accepted.
 
-    Parameters
-    ----------
-    host, origin
-        The headers Host and Origin of the request.
-
-    Examples
-    --------
     >>> allowed("127.0.0.1:8642", "http://127.0.0.1:8642"), allowed("127.0.0.1:8642", "http://evil.example")
     (True, False)
     >>> allowed("evil.example:8642", "http://evil.example:8642")
@@ -67,27 +60,11 @@ def allowed(host: str | None, origin: str | None) -> bool:
 
 
 class Server(socketserver.ThreadingTCPServer):
-    """A page and its plans, at a port of this computer.
+    """A page and its plans, at a port of this computer: the given one, or the first free one from `PORT` on.
 
-    Parameters
-    ----------
-    prepared
-        The scene.
-    port
-        The port; if there is none, the first free one from `PORT` on.
-    token
-        Text that the address must contain, so that another account of the same computer cannot open the page; with
-        None everybody on this computer is let in.
-    language
-        Of the page, as `atmosbox.page.lab_page` takes it.
+    The address must contain the ``token``, so that another account of the same computer cannot open the page; with None
+    everybody on this computer is let in. A scene that cannot run in a page is refused, and a port that is in use.
 
-    Raises
-    ------
-    AtmosboxError
-        If the scene cannot run in a page, or the port is in use.
-
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> with Server(prepare("elastic-collisions", {"molecules": 10}), token="open-sesame") as server:
     ...     server.address.endswith(f":{server.server_address[1]}/?token=open-sesame")
@@ -127,13 +104,7 @@ class Server(socketserver.ThreadingTCPServer):
         return self.token is None or (len(said) == 1 and secrets.compare_digest(said[0].encode(), self.token.encode()))
 
     def plan(self, settings: Mapping[str, Any]) -> str:
-        """Return the plan of a box with these settings, as JSON.
-
-        Raises
-        ------
-        AtmosboxError
-            If a setting is refused, or the box cannot run in a page.
-        """
+        """Return the plan of a box with these settings, as JSON; refuse what cannot run in a page."""
         checked = type(self.written.settings)
         free = {told.name for told in checked.describe() if told.kind == "str" and not told.choices}
         for name, text in settings.items():  # a text may name a file, and reading it would tell what is in it
@@ -213,15 +184,7 @@ class _Answer(BaseHTTPRequestHandler):
 
 
 def ended(server: Server, opened: Callable[[], None]) -> int:
-    """Serve a page until Ctrl-C or a request to end, and return that signal.
-
-    Parameters
-    ----------
-    server
-        The server.
-    opened
-        Function that is called as soon as the page can be opened.
-    """
+    """Serve a page until Ctrl-C or a request to end, and return that signal; call ``opened`` once it can be opened."""
     came: list[int] = []
 
     def end(number: int, frame: object) -> None:

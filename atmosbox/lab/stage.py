@@ -40,14 +40,7 @@ def instrument_of(setup: Setup, kind: type) -> Any:
 
 
 def running_panels(prepared: Prepared) -> tuple[Panel, ...]:
-    """Return the graphs of a scene without what only a whole run knows; an axis of time is linear.
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> {panel.x_scale for panel in running_panels(prepare("temperature", {}))}
-    {'linear'}
-    """
+    """Return the graphs of a scene without what only a whole run knows; an axis of time is linear."""
     panels = prepared.module.panels
     found = panels(prepared.settings) if callable(panels) else panels
     return tuple(running for panel in found if (running := _running(panel)) is not None)
@@ -110,8 +103,6 @@ def _swift(mass: Array) -> float:
 
     It is :math:`3 / \sqrt{m}`, in a mixture the c at which the mean of :math:`e^{-m c^2 / 2}` is the same.
 
-    Examples
-    --------
     >>> _swift(np.full(5, 4.0)), round(_swift(np.array([1.0, 9.0])), 2)
     (1.5, 2.76)
     """

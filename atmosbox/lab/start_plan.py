@@ -32,12 +32,6 @@ def start_of(parcel: Any, layout: Any) -> Start:
     """Return the data of the kernel ``start`` of a box.
 
     Nothing is drawn in a box whose start a page cannot draw: the kernel needs the data only to be loaded.
-
-    Examples
-    --------
-    >>> from atmosbox.simulation.preparation import build, prepare
-    >>> start_of(build(prepare("temperature", {"molecules": 20})).parcel, 0).parts.tolist()  # velocities first
-    [1, 0]
     """
     arrays = parcel.arrays()
     declared = parcel.start if is_drawn(parcel) else Declared(parcel.number, ())

@@ -64,8 +64,6 @@ class Start(NamedTuple):
 def _news(own: Any, first: Any) -> Any:
     """Return the differences of a plan from the first one; the key "=" marks a value that replaces the whole entry.
 
-    Examples
-    --------
     >>> _news({"a": 1, "b": {"c": [2, 3], "d": 4}}, {"a": 1, "b": {"c": [2, 9], "d": 4}})
     {'b': {'c': [2, 3]}}
     >>> _news({"a": {"b": 1}}, {"a": {"c": 1}})
@@ -85,25 +83,11 @@ def lab_starts(
 ) -> tuple[list[Start], str]:
     """Return the starts of a page, that with its own settings first, and the name of the module that all starts use.
 
-    The other starts have half or twice as many molecules, the presets of the scene, smaller or larger molecules,
-    then both together, and larger changes. Only boxes that run with the same kernels are offered.
+    The other starts have half or twice as many molecules, the presets of the scene, smaller or larger molecules, then
+    both together, and larger changes. Only boxes that run with the same kernels are offered, and module and starts have
+    at most ``most`` bytes; the first start is always included, and is the only one if this is 0. ``progress`` is called
+    with the share of the page that is filled and the name of the present step.
 
-    Parameters
-    ----------
-    prepared
-        The scene.
-    most
-        Largest size of module and starts [bytes]; the first start is always included, and is the only one if this is 0.
-    progress
-        Function that is called with the share of the page that is filled and the name of the present step.
-
-    Raises
-    ------
-    AtmosboxError
-        If the box cannot be built, or cannot run in a page.
-
-    Examples
-    --------
     >>> found, _ = lab_starts(prepare("elastic-collisions", {"molecules": 10}), 33_000)
     >>> [start.key for start in found[:2]]
     ['molecules=10, filling=15 %, seed=1', 'molecules=5, filling=15 %, seed=1']
@@ -149,22 +133,9 @@ def lab_starts(
 def served_start(prepared: Prepared, written: Prepared) -> tuple[Start, str]:
     """Return the start of a page that Python serves, and the name of its module.
 
-    Every setting of the scene has a control, for the page asks for the plan of a box with any others.
+    Every setting of the scene has a control, for the page asks for the plan of a box with any others. Presets are added
+    to the settings of the command, ``written``.
 
-    Parameters
-    ----------
-    prepared
-        The scene with the settings that the page asks for.
-    written
-        The scene with those of the command, to which presets are added.
-
-    Raises
-    ------
-    AtmosboxError
-        If the box cannot be built, or cannot run in a page.
-
-    Examples
-    --------
     >>> scene = prepare("elastic-collisions", {"molecules": 10})
     >>> start, _ = served_start(scene, scene)
     >>> [control["name"] for control in start.plan["told"]["controls"]][:3]

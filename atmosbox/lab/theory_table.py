@@ -48,12 +48,8 @@ Array = NDArray[np.float64]
 def short_run(prepared: Prepared) -> xr.Dataset:
     """Return the measurements after three frames, as input for the scene's theory.
 
-    Raises
-    ------
-    EngineError
-        If the engine cannot go on.
-    SettingError
-        If the modes of the engine change in these frames, because too many molecules crowd together for a page.
+    A scene is refused if the engine cannot go on, or if its modes change in these frames, because too many molecules
+    crowd together for a page.
     """
     setup = build(prepared)
     parcel: Any = setup.parcel
@@ -76,26 +72,12 @@ def short_run(prepared: Prepared) -> xr.Dataset:
 
 
 def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the curves of theory as functions of a measured variable or of a knob.
+    """Return the curves of theory as functions of a measured variable or of a knob, from the result of `short_run`.
 
-    Parameters
-    ----------
-    prepared, setup
-        The scene and its box.
-    found
-        The measurements of `short_run`.
-
-    Returns
-    -------
-    list of dict
-        ``along`` is the variable that the table is a function of, divided by the variable ``over`` if there is one;
-        ``grid`` has its values, and ``curves`` the values of each curve at these; the page interpolates linearly.
-        ``otherwise`` has the values of curves while the variable is not known, and ``times`` names the variable by
-        which a curve is multiplied.
-
-    Examples
-    --------
-    Theory predicts that the air has the temperature of the walls:
+    In each, ``along`` is the variable that the table is a function of, divided by the variable ``over`` if there is
+    one; ``grid`` has its values, and ``curves`` the values of each curve at these; the page interpolates linearly.
+    ``otherwise`` has the values of curves while the variable is not known, and ``times`` names the variable by which a
+    curve is multiplied. Theory predicts that the air has the temperature of the walls:
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> scene = prepare("temperature", {"molecules": 20})
@@ -295,8 +277,6 @@ def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
 
     The curve of a parcel has a kink where the cloud begins, the curve of a sounding at each of its levels.
 
-    Examples
-    --------
     >>> levels = np.linspace(0.0, 1.0, 11)
     >>> finer = finer_at_kinks(levels, np.where(levels < 0.45, levels**2, 2.0 * levels))
     >>> finer.size, [round(float(each), 3) for each in finer[:4]]
@@ -315,18 +295,11 @@ def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
 
 
 def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, Any]], unit: float) -> None:
-    """Add to the graphs of a page what is known of an ascent beforehand.
+    """Add to the graphs of a page what is known of an ascent beforehand, from the curves of theory, see `tables`.
 
-    Parameters
-    ----------
-    panels
-        The graphs, as data for the page. Each gets ``planned``, the points that its axes must include; a curve against
-        height or pressure that is known beforehand gets all its points, and a picture of the parcel its path, as
-        heights at moments of the ascent.
-    tables
-        The curves of theory, see `atmosbox.lab.theory_table.tables`.
-    unit
-        Unit of the moments of the ascent, in that of the elapsed time.
+    Each graph gets ``planned``, the points that its axes must include; a curve against height or pressure that is known
+    beforehand gets all its points, and a picture of the parcel its path, as heights at moments of the ascent. ``unit``
+    is that of the moments, in that of the elapsed time.
     """
     way = _ascent(tables, unit)
     for panel in panels:

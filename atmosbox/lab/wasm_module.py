@@ -40,8 +40,6 @@ BESIDE: tuple[tuple[str, dict[str, Any]], ...] = (
 def module_name(modes: Any, *, wells: bool = False) -> str:
     """Return the name of the module for a set of modes; ``wells`` if molecules attract each other.
 
-    Examples
-    --------
     >>> from atmosbox.engine.core.state import Modes
     >>> module_name(Modes(True, False, False, False, False, False, False, rows=True))
     'contacts-rows'
@@ -55,11 +53,6 @@ def source_stamp() -> str:
 
     Comments and docstrings do not count. The minor version of Python precedes the digest, because the syntax trees of
     two versions differ.
-
-    Examples
-    --------
-    >>> len(source_stamp().split()[1])
-    16
     """
     package = Path(__file__).parents[1]
     files = sorted([*(package / "engine").rglob("*.py"), *(package / "lab" / "kernels").glob("*.py")])
@@ -70,8 +63,6 @@ def source_stamp() -> str:
 def stamp_of(content: bytes) -> str:
     """Return the stamp of a gzipped module: its last section.
 
-    Examples
-    --------
     >>> stamp_of(gzip.compress(b"...sources3.11 0123456789abcdef"))
     '3.11 0123456789abcdef'
     """
@@ -81,8 +72,6 @@ def stamp_of(content: bytes) -> str:
 def elsewhere(scene: str) -> tuple[Command | str, ...]:
     """Return what to do with a scene that cannot run in a page: the parts of the end of a sentence.
 
-    Examples
-    --------
     >>> from atmosbox.errors import on_command_line
     >>> print(EngineError("It has no piston", *elsewhere("temperature")).said(on_command_line))
     It has no piston: show a run of it: atmosbox run temperature --save-molecules, then atmosbox view.
@@ -92,13 +81,7 @@ def elsewhere(scene: str) -> tuple[Command | str, ...]:
 
 
 def module_bytes(name: str, scene: str) -> bytes:
-    """Return a module by its name, gzipped as it is in the package.
-
-    Raises
-    ------
-    EngineError
-        If the package has no such module, or one of another version of the engine.
-    """
+    """Return a module by its name, gzipped as it is in the package; say what to do if the package does not have it."""
     path = FOLDER / f"{name}.wasm.gz"
     if not path.is_file():
         if not any(FOLDER.glob("*.wasm.gz")):

@@ -57,8 +57,6 @@ def crowd(setup: Setup) -> Crowd:
 def _gas_law() -> NDArray[np.float64]:
     """Return the coefficients of B2 and B3, which are polynomials in x = e^(1 / T*) - 1, from theory at four x.
 
-    Examples
-    --------
     >>> x = np.expm1(1.0 / 1.3)
     >>> second, third = (float(row @ x ** np.arange(4)) for row in _gas_law())
     >>> bool(abs(second / law.square_well_second_virial(1.3) - 1.0) < 1e-12)

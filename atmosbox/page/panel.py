@@ -15,8 +15,6 @@ from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 def plain(values: ArrayLike, figures: int = 7) -> list[float | None]:
     """Return numbers as JSON can hold them, with some significant digits; numbers that are not finite become null.
 
-    Examples
-    --------
     >>> plain([1.0, math.nan, 1.0 / 3.0])
     [1.0, None, 0.3333333]
     """

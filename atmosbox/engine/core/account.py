@@ -32,17 +32,9 @@ GIVEN = {
 def residual(terms: Mapping[str, ArrayLike], start: float | None = None) -> NDArray[np.float64]:
     """Return the energy missing from a budget, relative to the largest energy in it [1].
 
-    Parameters
-    ----------
-    terms
-        The terms by name, at one time or at several; those that a box lacks may be missing, and what is not in `STORES`
-        was given. The last axis of ``heat_from_wall`` is that of the walls.
-    start
-        The energy stored at the start; None for what the first of several times implies.
-
-    Examples
-    --------
-    A wall gives 2, another takes 1, and the piston does work of 3:
+    ``terms`` are given at one time or at several; those that a box lacks may be missing, and what is not in `STORES`
+    was given. The last axis of ``heat_from_wall`` is that of the walls. ``start`` is the energy stored at the start;
+    None for what the first of several times implies. A wall gives 2, another takes 1, and the piston does work of 3:
 
     >>> given = {"heat_from_wall": [[0.0, 0.0], [2.0, -1.0]], "work_by_piston": [0.0, 3.0]}
     >>> residual({"kinetic_energy": [10.0, 14.0], **given}).tolist()

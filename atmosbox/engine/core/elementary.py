@@ -59,8 +59,6 @@ def _log_near_one(f, c):
 def log_of_normal(x):
     """Return the natural logarithm of a finite number of at least 2^-1022.
 
-    Examples
-    --------
     >>> [float(each) for each in log_of_normal(np.array([1.0, 2.0]))]
     [0.0, 0.6931471805599453]
     """
@@ -74,8 +72,6 @@ def log_of_normal(x):
 def log(x):
     """Return the natural logarithm: ``-inf`` of 0, NaN below.
 
-    Examples
-    --------
     >>> float(log(10.0)), float(log(0.0))
     (2.302585092994046, -inf)
     """
@@ -90,8 +86,6 @@ def log(x):
 def log1p(x):
     """Return log(1 + x) of a finite number above -1, accurate where x is small.
 
-    Examples
-    --------
     >>> float(log1p(1e-20))
     1e-20
     """
@@ -124,8 +118,6 @@ _EXPM1 = (
 def exp(x):
     """Return the exponential.
 
-    Examples
-    --------
     >>> float(exp(0.0)), float(exp(-1000.0)), float(exp(1000.0))
     (1.0, 0.0, inf)
     """
@@ -146,8 +138,6 @@ def exp(x):
 def expm1(x):
     """Return exp(x) - 1, accurate where x is small, for x up to 709.
 
-    Examples
-    --------
     >>> float(expm1(1e-20)), float(expm1(-1000.0))
     (1e-20, -1.0)
     """
@@ -177,8 +167,6 @@ _COSINE_HIGH = (-2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.1359
 def circle(turns):
     """Return cosine and sine of an angle given in turns (one turn is 2 pi), from 0 to 1.
 
-    Examples
-    --------
     >>> tuple(float(each) for each in circle(0.125))
     (0.7071067811865476, 0.7071067811865476)
     """
@@ -212,8 +200,6 @@ def circle(turns):
 def cbrt(x):
     """Return the cube root of 0 or a normal number above 0.
 
-    Examples
-    --------
     >>> float(cbrt(27.0)), float(cbrt(0.0))
     (3.0, 0.0)
     """
@@ -235,8 +221,6 @@ def cbrt(x):
 def root(x, degree):
     """Return the first, second or third root of a number that is not negative.
 
-    Examples
-    --------
     >>> [float(root(64.0, degree)) for degree in (1, 2, 3)]
     [64.0, 8.0, 4.0]
     """
@@ -274,8 +258,6 @@ _TWO_DOWN = (
 def lgamma(x):
     r"""Return :math:`\ln \Gamma(x)` for x from 1e-300 to 1e290; below 2, where it has zeros, the error is absolute.
 
-    Examples
-    --------
     >>> float(lgamma(2.0)), round(float(lgamma(11.0)), 9), round(math.log(math.factorial(10)), 9)
     (0.0, 15.104412573, 15.104412573)
     """

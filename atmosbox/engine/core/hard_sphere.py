@@ -13,19 +13,10 @@ from atmosbox.engine.core.random import gamma
 def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
     r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
-    They touch when :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, which is below zero while they approach,
-    and :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) instead of b. For a pair that moves
-    apart it is then not above zero either, unless the two overlap. So one test rejects nearly all pairs that do not
-    meet.
-
-    Parameters
-    ----------
-    rx, ry, rz
-        Position of one molecule relative to the other [length].
-    vx, vy, vz
-        Velocity of the first relative to the other [length/time].
-    diameter_squared
-        Square of the distance of their centres in contact [length^2].
+    With the position r [length] and the velocity v [length/time] of one molecule relative to the other they touch when
+    :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, which is below zero while they approach, and
+    :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) instead of b. For a pair that moves apart it
+    is then not above zero either, unless the two overlap. So one test rejects nearly all pairs that do not meet.
     """
     b = rx * vx + ry * vy + rz * vz
     speed_squared = vx * vx + vy * vy + vz * vz
@@ -38,20 +29,11 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
 def earlier_root(discriminant, b, c):
     """Return the time until two molecules touch: the earlier root of `quadratic` [time from now], 0 if it is past.
 
-    Call it only if the discriminant is above zero and b below zero: otherwise the two never touch.
+    Call it only if the discriminant is above zero and b below zero: otherwise the two never touch. The usual formula,
+    (-b - sqrt(d)) / v^2, subtracts nearly equal numbers when the two nearly touch, and loses digits; c / (-b + sqrt(d))
+    is the same root without a difference. A pair that overlaps by rounding touches at once if it approaches, and never
+    if it moves apart (Bannerman et al. 2014, doi:10.1007/s40571-014-0021-8).
 
-    Notes
-    -----
-    The usual formula, (-b - sqrt(d)) / v^2, subtracts nearly equal numbers when the two nearly touch, and loses
-    digits; c / (-b + sqrt(d)) is the same root without a difference. A pair that overlaps by rounding touches at once
-    if it approaches, and never if it moves apart [1]_.
-
-    References
-    ----------
-    .. [1] Bannerman, M. N., Strobl, S., Formella, A., Poeschel, T. (2014), doi:10.1007/s40571-014-0021-8.
-
-    Examples
-    --------
     They are three diameters apart and approach at a speed of one, so they fly the gap of two in a time of two:
 
     >>> earlier_root(*quadratic(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0))
@@ -62,30 +44,13 @@ def earlier_root(discriminant, b, c):
 
 @kernel
 def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
-    r"""Return the change of velocity that an elastic contact gives a molecule.
+    r"""Return the change of velocity [length/time] that an elastic contact gives a molecule.
 
-    The impulse acts along the line of centres,
-    :math:`\Delta v_i = -\frac{2 m_j}{m_i + m_j} \frac{(v \cdot r)}{|r|^2} r`.
-
-    Parameters
-    ----------
-    rx, ry, rz, vx, vy, vz
-        Position [length] and velocity [length/time] of the molecule relative to its partner.
-    mass, other_mass
-        Mass of the molecule and of its partner [mass].
-
-    Returns
-    -------
-    (float, float, float)
-        Change of the molecule's velocity [length/time]; the partner's is this times -mass / other_mass.
-
-    Notes
-    -----
-    The distance at contact equals sigma only up to rounding. Dividing by the actual \|r\|^2 instead of sigma^2
+    With position r and velocity v relative to its partner the impulse acts along the line of centres,
+    :math:`\Delta v_i = -\frac{2 m_j}{m_i + m_j} \frac{(v \cdot r)}{|r|^2} r`; the partner's change is -m_i / m_j times
+    this. The distance at contact equals sigma only up to rounding. Dividing by the actual \|r\|^2 instead of sigma^2
     conserves the energy to the last digits nevertheless.
 
-    Examples
-    --------
     A head-on contact of molecules of equal mass swaps their velocities:
 
     >>> resolve_contact(1.0, 0.0, 0.0, -2.0, 0.0, 0.0, 1.0, 1.0)[0]
@@ -99,35 +64,14 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 
 @kernel
 def share_energy(energy, dimensions, rotation, other_rotation, state):
-    r"""Share the energy of a contact between relative motion and the two rotations (Larsen and Borgnakke [1]_).
+    r"""Share the energy of a contact between relative motion and the two rotations; return the three shares [energy].
 
-    The shares are in the ratio of three gamma variates, of shapes :math:`(d + 1)/2` for the relative motion and
-    :math:`\zeta_i/2`, :math:`\zeta_j/2` for the rotations, with :math:`\zeta` rotational degrees of freedom. In space
-    the first shape is 2, and not 3/2 as for a molecule at any moment: hard spheres collide at a rate proportional to
-    their relative speed, so fast pairs collide more often. With this shape detailed balance holds.
+    They are in the ratio of three gamma variates, of shapes :math:`(d + 1)/2` for the relative motion in d dimensions
+    and :math:`\zeta_i/2`, :math:`\zeta_j/2` for the rotations, with :math:`\zeta` rotational degrees of freedom
+    (Borgnakke, C., Larsen, P. S. 1975, doi:10.1016/0021-9991(75)90094-7). In space the first shape is 2, and not 3/2 as
+    for a molecule at any moment: hard spheres collide at a rate proportional to their relative speed, so fast pairs
+    collide more often. With this shape detailed balance holds.
 
-    Parameters
-    ----------
-    energy
-        Relative kinetic energy plus both rotational energies [energy].
-    dimensions
-        Number d of dimensions in which the molecules move, 2 or 3.
-    rotation, other_rotation
-        Rotational degrees of freedom, 0, 2 or 3.
-    state
-        State of the random numbers; it is advanced.
-
-    Returns
-    -------
-    (float, float, float)
-        Relative kinetic energy and the two rotational energies [energy]; their sum is ``energy``.
-
-    References
-    ----------
-    .. [1] Borgnakke, C., Larsen, P. S. (1975), J. Comput. Phys. 18, 405, doi:10.1016/0021-9991(75)90094-7.
-
-    Examples
-    --------
     >>> import numpy as np
     >>> round(sum(share_energy(3.0, 3.0, 2.0, 2.0, np.array([1], np.uint64))), 12)
     3.0

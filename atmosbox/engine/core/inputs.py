@@ -27,11 +27,6 @@ def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
     """Return three finite numbers per molecule as (molecule, axis), or refuse.
 
     A copy is stored column by column. Without a copy the result may be the caller's own array: do not change it.
-
-    Examples
-    --------
-    >>> matrix([[1, 2, 3]], "position")
-    array([[1., 2., 3.]])
     """
     array = numbers(values, name, order="F" if copy else "K", copy=copy or None)
     if array.size == 0:
@@ -51,11 +46,6 @@ def column(
 
     No number may lie between 0 and ``small``. If ``shared``, one number given for all molecules is stored once, and the
     result cannot be changed.
-
-    Examples
-    --------
-    >>> column(1.0, 3, "mass", positive=True)
-    array([1., 1., 1.])
     """
     array = numbers(values, name)
     if array.ndim > 1 or (array.ndim == 1 and array.size != n):
@@ -71,13 +61,7 @@ def column(
 
 
 def sides_of(length: Any) -> Array:
-    """Return the three sides of a box, or refuse.
-
-    Examples
-    --------
-    >>> sides_of((1, 2, 3))
-    array([1., 2., 3.])
-    """
+    """Return the three sides of a box, or refuse."""
     try:
         sides = np.array(length, np.float64)
     except (TypeError, ValueError):
@@ -100,13 +84,7 @@ def speeds(velocity: Array) -> None:
 
 
 def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, bool]) -> Array:
-    """Return the centres, moved in place where rounding has put them into a wall; refuse any that lie outside.
-
-    Examples
-    --------
-    >>> inside(np.array([[1.0, 1.0, 1.0]]), np.ones(1), np.array([2.0, 2.0, 2.0]), (False, False, False))
-    array([[1., 1., 1.]])
-    """
+    """Return the centres, moved in place where rounding has put them into a wall; refuse any that lie outside."""
     alike = diameter.size > 0 and diameter.strides == (0,)
     radius = 0.5 * (diameter[0] if alike else diameter)  # one number where possible: an array of ten million is large
     for axis in range(3):
@@ -142,12 +120,6 @@ def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravit
 
 
 def sum_of_squares(column: Array) -> float:
-    """Return the sum of the squares of a column, without making a second array of its size.
-
-    Examples
-    --------
-    >>> sum_of_squares(np.array([3.0, 4.0]))
-    25.0
-    """
+    """Return the sum of the squares of a column, without making a second array of its size."""
     pieces = (column[first : first + _PIECE] for first in range(0, column.size, _PIECE))
     return sum((float(np.sum(piece * piece)) for piece in pieces), 0.0)

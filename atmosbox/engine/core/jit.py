@@ -48,18 +48,8 @@ def _quietly(function: Callable[..., Any]) -> Callable[..., Any]:
 class Kernel:
     """A function of the engine that is compiled when Python or another kernel first calls it.
 
-    All other attributes are those of the function that other kernels call.
-
-    Parameters
-    ----------
-    function
-        The Python function.
-    compile
-        Returns the compiled function that other kernels call.
-    for_python
-        Returns the compiled function that Python calls, where it differs from that.
-    plain
-        Whether Python runs the function uncompiled, so that it is compiled only for other kernels.
+    ``compile`` returns the compiled function that other kernels call, whose attributes this object has too;
+    ``for_python`` the one that Python calls, where it differs. Python runs a ``plain`` function uncompiled.
     """
 
     def __init__(
@@ -119,12 +109,12 @@ def kernel(
     parallel: bool = False,
     plain: bool = False,
 ) -> Any:
-    """Compile a function of the engine.
+    """Compile a function of the engine: one of numbers, arrays and NamedTuples of them, without strings or exceptions.
 
     Parameters
     ----------
     function
-        A function of numbers, arrays and NamedTuples of them; no strings, no exceptions, no allocation in loops.
+        The function.
     entry
         Whether Python calls it: then its machine code is kept on disk. A kernel that another kernel calls is always
         inlined into it, so that flags passed as constants cost nothing.
@@ -132,18 +122,13 @@ def kernel(
         Whether its code is inserted into its callers before they are compiled: for the few lines of the innermost
         loop. It must have a single return (measured: with two, the loop takes 1.7 times as long).
     allocates
-        Whether the function makes arrays. One that does not is compiled without numba's counting of references,
-        which would cost a quarter of the time of an event.
+        Whether the function makes arrays, never in a loop. One that does not is compiled without numba's counting of
+        references, which would cost a quarter of the time of an event.
     parallel
         Whether its `prange` loops share the work among threads. The cache tells two versions of one function apart by
         the values that they close over, not by this flag: give the serial and the parallel version different ones.
     plain
         Whether Python runs the function uncompiled: for short functions that Python needs before anything is compiled.
-
-    Returns
-    -------
-    Kernel
-        The function, compiled when it is first called.
     """
     if function is None:
         return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel, plain=plain)

@@ -1,9 +1,8 @@
 """Where the machine code of kernels is kept, and reports of the compilations that really happen.
 
-numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel
-calls *in another file*, or a constant imported from one, and numba still uses the old machine code. Here the
-cache is kept under a digest of all the engine's code, so that any edit of code, or a newly installed version,
-starts a new cache, and an edited comment does not. That is right only because the engine imports nothing of
+numba's own disk cache watches only the file that holds a function, not the other files that it calls or whose constants
+it uses. Here the cache is kept under a digest of all the engine's code, so that any edit of code, or a newly installed
+version, starts a new cache, and an edited comment does not. That is right only because the engine imports nothing of
 atmosbox from outside its folder, which a test enforces.
 """
 
@@ -42,16 +41,10 @@ def _is_text(node: ast.AST) -> bool:
 
 
 def source_digest(folder: Path | None = None, memory: Path | None = None) -> str:
-    """Return a short digest of the code in the engine's folders, of numba and of Python.
+    """Return a short digest of the code in a folder, by default the engine's, of numba and of Python.
 
-    Only code counts: an edited docstring or comment leaves the digest as it is.
-
-    Parameters
-    ----------
-    folder
-        The folder of the sources, by default the engine's.
-    memory
-        A folder where the digests of earlier sources are kept: parsing all sources again takes a tenth of a second.
+    Only code counts: an edited docstring or comment leaves the digest as it is. The folder ``memory`` keeps the digests
+    of earlier sources, because parsing all sources again takes a tenth of a second.
     """
     from importlib.metadata import version as version_of
 
@@ -92,12 +85,9 @@ def _homes_of_caches() -> list[Path]:
 
 
 def own_folder(folder: Path) -> Path:
-    """Return a folder whose files may be run: it is made if needed, and only its owner may write to it, or read it.
+    """Return a folder whose files may be run; make it if needed.
 
-    Raises
-    ------
-    ForeignError
-        If it is a link, or belongs to another user, or other users may write to it.
+    A link is refused, and a folder that belongs to another user, or that other users can write to.
     """
     for each in reversed((folder, *folder.parents)):
         if not os.path.lexists(each):
@@ -108,14 +98,9 @@ def own_folder(folder: Path) -> Path:
 
 
 def own_content(path: Path) -> bytes:
-    """Return the content of a file that no other user can have written.
+    """Return the content of a file that no other user can have written, or refuse it.
 
     The file is checked after it was opened, so it does not matter who can write to the folders above it.
-
-    Raises
-    ------
-    ForeignError
-        If it is a link, or belongs to another user, or other users may write to it.
     """
     try:
         with open(path, "rb", opener=lambda name, flags: os.open(name, flags | _NO_LINK)) as file:
@@ -196,10 +181,8 @@ _WATCHES: list[Callable[[str, bool], None]] = []
 def compilations(watch: Callable[[str, bool], None]) -> Iterator[None]:
     """Report every kernel that is compiled while a block runs; kernels found in the cache are not reported.
 
-    Parameters
-    ----------
-    watch
-        Called with the name of the kernel and True when its compilation begins, and with False when it has ended.
+    ``watch`` is called with the name of the kernel and True when its compilation begins, and with False when it has
+    ended.
     """
     _WATCHES.append(watch)
     try:

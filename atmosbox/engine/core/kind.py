@@ -18,13 +18,8 @@ def classify(
 ) -> tuple[Kinds, NDArray[np.int64], Array]:
     """Group equal molecules into kinds; molecules of different species are never of the same kind.
 
-    Returns
-    -------
-    (Kinds, ndarray, ndarray)
-        The kinds; the kind of each molecule, (molecule,); the radius of each class of sizes, (size,) [length].
+    Returns the kinds; the kind of each molecule, (molecule,); the radius of each class of sizes, (size,) [length].
 
-    Examples
-    --------
     >>> both = np.array([2.0, 1.0, 2.0]), np.ones(3), np.zeros(3)
     >>> classify(*both, None)[1].tolist()
     [1, 0, 1]

@@ -71,13 +71,7 @@ class Course:
         return float(interpolate(time, np.array(self._time), np.array(self._moment)))
 
     def corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the times and moments between which the moment is linear in time; it is constant after the last.
-
-        Examples
-        --------
-        >>> [corner.tolist() for corner in Course(10.0).corners()]
-        [[0.0, 10.0], [0.0, 10.0]]
-        """
+        """Return the times and moments between which the moment is linear in time; it is constant after the last."""
         if self.led or not 0.0 < self.end < math.inf:
             return np.array(self._time), np.array(self._moment)
         return np.array([0.0, self.end]), np.array([0.0, self.end])
@@ -244,12 +238,7 @@ def _log_pressure(time, lift):
 def ceiling_velocity(at, lift):
     """Return the velocity [length/time] of the ceiling for the next interval; the module's docstring has the formula.
 
-    Parameters
-    ----------
-    at
-        State of the gas now: `Gauges`.
-    lift
-        The pressure to follow: `Lift`. Its average of (Z - 1) / n, which hardly changes while n falls, is updated.
+    ``at`` are the `Gauges` of the gas now. The average of (Z - 1) / n, which hardly changes while n falls, is updated.
     """
     kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
     ideal = at.density * kT
@@ -269,15 +258,6 @@ def ceiling_velocity(at, lift):
 def stiffness(compressibility_factor: float, freedom: float) -> float:
     """Return -d ln p / d ln V without exchange of heat, V the open volume: Gamma in the module's docstring [1].
 
-    Parameters
-    ----------
-    compressibility_factor
-        Z of a gas whose (Z - 1) / n is constant.
-    freedom
-        Degrees of freedom of a molecule.
-
-    Examples
-    --------
     For points it is the adiabatic index; spheres with Z = 1.1 are stiffer:
 
     >>> round(stiffness(1.0, 5), 6), round(stiffness(1.1, 5), 6)

@@ -36,13 +36,7 @@ class MarchingParcel(Parcel):
         return self._step
 
     def divide(self, interval: float) -> None:
-        """Shorten the time step so that a whole number of steps makes an interval [time].
-
-        Raises
-        ------
-        RefusedError
-            If the run has begun, or the interval is not finite and above 0.
-        """
+        """Shorten the time step so that a whole number of steps makes an interval [time]; a run must not have begun."""
         interval = number(interval, "interval", above=0.0)
         if self._step:
             raise RefusedError("a time step is chosen before the first step")

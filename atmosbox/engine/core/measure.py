@@ -28,23 +28,8 @@ def layer_sample(parcel: Parcel, snapshot: Snapshot, layers: int) -> Layers:
     r"""Return the number of molecules, and the energy of their disordered motion, in layers of equal thickness.
 
     The temperature of a layer is ``2 * energy / freedom``, because
-    :math:`\langle \sum m (v - \bar v)^2 \rangle = d (n - 1) k T` for n molecules in d dimensions.
-
-    Parameters
-    ----------
-    parcel, snapshot
-        The box, and a snapshot of its molecules.
-    layers
-        Number of layers between floor and ceiling.
-
-    Returns
-    -------
-    Layers
-        The sums of this sample.
-
-    Examples
-    --------
-    Two molecules that move as one have no temperature:
+    :math:`\langle \sum m (v - \bar v)^2 \rangle = d (n - 1) k T` for n molecules in d dimensions. Two molecules that
+    move as one have no temperature:
 
     >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [1, 0, 0]], length=(4, 4, 4))
@@ -70,8 +55,6 @@ def temperature(parcel: Parcel, snapshot: Snapshot) -> float:
 
     The box is at rest, so the mean motion is not subtracted: every component of every velocity counts.
 
-    Examples
-    --------
     >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [-1, 1, 1]], length=(4, 4, 4))
     >>> round(temperature(pair, pair.snapshot()), 6)
@@ -86,8 +69,6 @@ def temperature(parcel: Parcel, snapshot: Snapshot) -> float:
 def speed_counts(snapshot: Snapshot, edges: Array) -> Array:
     """Return the number of molecules in bins of speed with these edges [length/time]; faster ones are not counted.
 
-    Examples
-    --------
     >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 4))
     >>> speed_counts(pair.snapshot(), np.array([0.0, 1.5, 3.0]))
@@ -100,8 +81,6 @@ def speed_counts(snapshot: Snapshot, edges: Array) -> Array:
 def momentum(parcel: Parcel, snapshot: Snapshot) -> Array:
     """Return the total momentum along the three axes [momentum].
 
-    Examples
-    --------
     >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 4))
     >>> momentum(pair, pair.snapshot())
@@ -115,8 +94,6 @@ def mean_free_path(contacts: int, path: float) -> float:
 
     Every contact ends two free flights.
 
-    Examples
-    --------
     >>> mean_free_path(5, 20.0)
     2.0
     """

@@ -12,22 +12,10 @@ from atmosbox.engine.core.jit import kernel
 
 @kernel
 def time_to_leave(x, v, low, high):
-    r"""Return when a molecule in uniform motion leaves an interval, and at which end.
+    """Return when a molecule in uniform motion leaves an interval [time from now], and at which end: 1 for the upper.
 
-    Parameters
-    ----------
-    x, v
-        Its coordinate [length] and velocity [length/time].
-    low, high
-        The interval [length].
+    The lower end is 0. The time is ``inf`` if it stands still.
 
-    Returns
-    -------
-    (float, int)
-        Time from now [time], ``inf`` if it stands still; 1 for the upper end, 0 for the lower.
-
-    Examples
-    --------
     One length below the upper end at half a length per time:
 
     >>> time_to_leave(2.0, 0.5, 0.0, 3.0)
@@ -41,31 +29,12 @@ def time_to_leave(x, v, low, high):
 
 @kernel
 def time_to_leave_in_gravity(z, v, low, high, gravity):
-    r"""Return when a molecule in free fall leaves a layer, and at which end.
+    r"""Return when a molecule in free fall leaves a layer [time from now], and at which end: 1 for the upper.
 
-    It reaches the upper end if :math:`v^2 > 2 g h`, at :math:`t = 2 h / (v + \sqrt{v^2 - 2 g h})`; else
-    it falls out of the lower end, at the later root of the same parabola.
+    It reaches the upper end if :math:`v^2 > 2 g h`, at :math:`t = 2 h / (v + \sqrt{v^2 - 2 g h})`; else it falls out of
+    the lower end (0), at the later root of the same parabola. Both roots are sums of numbers of the same sign, so that
+    no digits are lost by cancellation.
 
-    Parameters
-    ----------
-    z, v
-        Its height [length] and upward velocity [length/time].
-    low, high
-        The layer [length].
-    gravity
-        Acceleration, downward, > 0 [length/time^2].
-
-    Returns
-    -------
-    (float, int)
-        Time from now [time]; 1 for the upper end, 0 for the lower.
-
-    Notes
-    -----
-    Both roots are written as sums of numbers of the same sign, so that no digits are lost by cancellation.
-
-    Examples
-    --------
     Thrown upward at unit speed in unit gravity from the floor it is back after two units of time:
 
     >>> time_to_leave_in_gravity(0.0, 1.0, 0.0, 9.0, 1.0)
@@ -86,24 +55,11 @@ def time_to_leave_in_gravity(z, v, low, high, gravity):
 
 @kernel
 def time_to_ceiling(gap, closing_speed, gravity):
-    r"""Return when a molecule meets a ceiling that moves at constant speed.
+    """Return when a molecule meets a ceiling that moves at constant speed [time from now], ``inf`` for never.
 
-    Parameters
-    ----------
-    gap
-        Height of the ceiling above the top of the molecule [length].
-    closing_speed
-        Upward velocity of the molecule minus that of the ceiling [length/time].
-    gravity
-        Acceleration, downward, >= 0 [length/time^2].
+    ``gap`` is the height of the ceiling above the top of the molecule, ``closing_speed`` the upward velocity of the
+    molecule minus that of the ceiling.
 
-    Returns
-    -------
-    float
-        Time from now [time], ``inf`` if they never meet.
-
-    Examples
-    --------
     >>> time_to_ceiling(1.0, 0.5, 0.0)
     2.0
     >>> time_to_ceiling(1.0, 1.0, 1.0)

@@ -45,28 +45,8 @@ def packing_fraction(length: Sequence[float], diameter: ArrayLike, *, planar: bo
 
 
 def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bool], planar: bool) -> None:
-    """Refuse molecules that cannot fit into the box, wherever they are placed.
+    """Refuse molecules that cannot fit into the box, wherever they are placed: too wide, or beyond the densest packing.
 
-    Parameters
-    ----------
-    sides : (axis,)
-        The sides of the box [length].
-    sigma : (molecule,)
-        Diameters [length].
-    periodic
-        Which axes are periodic.
-    planar
-        Whether the molecules are discs in the plane of x and z.
-
-    Raises
-    ------
-    RefusedError
-        If a side is not above 0, or a diameter below 0.
-    PackingError
-        If a molecule is wider than the box, or if they fill more than the densest packing.
-
-    Examples
-    --------
     >>> refuse_impossible(np.array([4.0, 2.0, 4.0]), np.array([3.0]), (False, False, False), planar=False)
     Traceback (most recent call last):
     atmosbox.engine.core.refusal.PackingError: a molecule of diameter 3 does not fit into a box of side 2
@@ -93,14 +73,7 @@ def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bo
 
 
 def refuse_solid(sides: Array, sigma: Array, planar: bool) -> None:
-    """Refuse equal molecules that fill all but a ten-thousandth of the densest packing: they collide without end.
-
-    Examples
-    --------
-    A crystal in which molecules still move is no problem:
-
-    >>> refuse_solid(np.full(3, 4.6), np.full(128, 1.0), planar=False)
-    """
+    """Refuse equal molecules that fill all but a ten-thousandth of the densest packing: they collide without end."""
     densest = _DENSEST_PLANE if planar else _DENSEST
     phi = packing_fraction(list(sides), sigma, planar=planar)
     if sigma.size > 1 and np.ptp(sigma) == 0.0 and phi > 0.9999 * densest:

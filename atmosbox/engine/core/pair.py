@@ -25,8 +25,6 @@ def extent(radius):
 def reach(radius, other_radius):
     """Return the distance of two centres at which the pair begins to interact [length]: the sum of both extents.
 
-    Examples
-    --------
     >>> reach(0.5, 0.7)
     1.2
     """
@@ -37,8 +35,6 @@ def reach(radius, other_radius):
 def nearest_along(r, length, inverse):
     """Return a distance along one axis [length] to the nearest image; ``inverse`` is 1/length, or 0 between walls.
 
-    Examples
-    --------
     In a periodic box of length 10, a molecule 9 to the right is 1 to the left:
 
     >>> float(nearest_along(9.0, 10.0, 0.1)), float(nearest_along(9.0, 10.0, 0.0))
@@ -63,20 +59,8 @@ def nearest_image(rx, ry, rz, box, modes):
 def soonest_image(rx, ry, rz, ux, uy, uz, distance, box):
     """Return how long it takes a molecule to meet another or one of its periodic images [time], ``inf`` for never.
 
-    Along each periodic axis two images are within a box length: the nearest one and the one on the other side.
-
-    Parameters
-    ----------
-    rx, ry, rz, ux, uy, uz
-        Position relative to the nearest image [length] and relative velocity [length/time].
-    distance
-        Distance of the centres at which they meet, `reach` [length].
-    box
-        The box.
-
-    Examples
-    --------
-    The nearest image is one above, and is missed; the one below is three away:
+    Along each periodic axis two images are within a box length: the nearest one, whose relative position is given, and
+    the one on the other side. Here the nearest image is one above, and is missed; the one below is three away:
 
     >>> from atmosbox.engine.core.state import Box
     >>> box = Box(4.0, 4.0, 4.0, 0.25, 0.25, 0.25, gravity=0.0, planar=False, exchange=1.0, stall=1.0)
@@ -101,18 +85,7 @@ def approach(rx, ry, rz, ux, uy, uz, distance):
     """Return how a pair approaches: a discriminant, not above zero if the pair misses, and two numbers for `predict`.
 
     Most pairs miss, so the time of meeting is computed in two steps, of which the second is rarely needed. The first of
-    the two numbers is below zero while the pair approaches.
-
-    Parameters
-    ----------
-    rx, ry, rz, ux, uy, uz
-        Position [length] and velocity [length/time] of one molecule relative to the other.
-    distance
-        Distance of the centres at which they meet, `reach` [length].
-
-    Examples
-    --------
-    Three diameters apart, closing at unit speed:
+    the two numbers is below zero while the pair approaches. Three diameters apart, closing at unit speed:
 
     >>> predict(*approach(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0))
     2.0

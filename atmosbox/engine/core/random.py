@@ -37,8 +37,6 @@ def _mixed(z):
 def scramble(word):
     """Return a random word that depends on another word alone.
 
-    Examples
-    --------
     >>> bool(scramble(np.uint64(1)) == scramble(np.uint64(2)))
     False
     """
@@ -54,8 +52,6 @@ def _number(state):
 def new_state(seed: int, use: int = RUN) -> NDArray[np.uint64]:
     """Return the first state, (1,), for a seed of any length; each use of the seed has another one.
 
-    Examples
-    --------
     >>> int(new_state(1)[0]) != int(new_state(1, START)[0])
     True
     """
@@ -100,8 +96,6 @@ Source = RandomNumbers | np.random.Generator
 def normal(source: Source, size: int | tuple[int, ...]) -> NDArray[np.float64]:
     """Return independent normal numbers of mean 0 and variance 1 in an array of the shape ``size`` (Box and Muller).
 
-    Examples
-    --------
     >>> numbers = normal(RandomNumbers(1), (1, 2))
     >>> numbers[0].tolist() == list(gaussian_pair(new_state(1, START)))
     True
@@ -115,15 +109,8 @@ def normal(source: Source, size: int | tuple[int, ...]) -> NDArray[np.float64]:
 
 @kernel
 def uniform(state):
-    """Return a number between 0 and 1, both excluded.
+    """Return a number between 0 and 1, both excluded, and advance the state.
 
-    Parameters
-    ----------
-    state : (1,)
-        The state; it is advanced.
-
-    Examples
-    --------
     >>> 0.0 < uniform(np.array([7], np.uint64)) < 1.0
     True
     """
@@ -133,13 +120,7 @@ def uniform(state):
 
 @kernel
 def gaussian_pair(state):
-    """Return two independent normal numbers of mean 0 and variance 1, and advance the state (Box and Muller).
-
-    Examples
-    --------
-    >>> len(gaussian_pair(np.array([7], np.uint64)))
-    2
-    """
+    """Return two independent normal numbers of mean 0 and variance 1, and advance the state (Box and Muller)."""
     radius = math.sqrt(-2.0 * log_of_normal(uniform(state)))
     cosine, sine = circle(uniform(state))
     return radius * cosine, radius * sine
@@ -147,17 +128,8 @@ def gaussian_pair(state):
 
 @kernel
 def gamma(degrees, state):
-    """Return a gamma variate of shape ``degrees`` / 2: the energy, in kT, of ``degrees`` quadratic degrees of freedom.
+    """Return a gamma variate of shape ``degrees`` / 2: the energy in kT of 0 to 4 quadratic degrees of freedom.
 
-    Parameters
-    ----------
-    degrees
-        A whole number, 0 to 4.
-    state : (1,)
-        The state; it is advanced.
-
-    Examples
-    --------
     >>> gamma(0.0, np.array([7], np.uint64))
     0.0
     """
@@ -174,17 +146,8 @@ def gamma(degrees, state):
 
 @kernel
 def gamma_of_shape(shape, state):
-    """Return a gamma variate of any shape: the energy, in kT, of 2 * shape quadratic degrees of freedom.
+    """Return a gamma variate of any shape, 0 or above: the energy, in kT, of 2 * shape quadratic degrees of freedom.
 
-    Parameters
-    ----------
-    shape
-        Not negative; for shape 0 the result is 0.
-    state : (1,)
-        The state; it is advanced.
-
-    Examples
-    --------
     >>> gamma_of_shape(0.0, np.array([7], np.uint64))
     0.0
     """

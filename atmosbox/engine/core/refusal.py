@@ -39,8 +39,6 @@ class CoarseStepWarning(UserWarning):
 def shown(value: Any) -> str:
     """Return the text of a refused value: numbers of numpy are written like any other number.
 
-    Examples
-    --------
     >>> shown(np.float64(1.0)), shown((np.float64(1.0), 2)), shown(np.zeros(2)), shown("wide")
     ('1.0', '(1.0, 2)', '[0.0, 0.0]', "'wide'")
     """
@@ -61,13 +59,7 @@ def number(
     most: float = math.inf,
     infinite: bool = False,
 ) -> float:
-    """Return a number within its limits, or refuse.
-
-    Examples
-    --------
-    >>> number(9.8, "gravity", least=0.0)
-    9.8
-    """
+    """Return a number within its limits, or refuse."""
     try:
         found = float(value)
     except (TypeError, ValueError):
@@ -80,13 +72,7 @@ def number(
 
 
 def whole(value: Any, name: str, *, least: int) -> int:
-    """Return a whole number that is not below ``least``, or refuse.
-
-    Examples
-    --------
-    >>> whole(25, "layers", least=1)
-    25
-    """
+    """Return a whole number that is not below ``least``, or refuse."""
     found = number(value, name, least=least)
     if found != math.floor(found):
         raise RefusedError(f"{name} = {shown(value)} is not a whole number: give one from {least} up")

@@ -125,8 +125,6 @@ def pack(attributes: dict[str, Any]) -> tuple[dict[str, Any], Pieces]:
 
     Functions are left out: compiled ones cannot be copied; the box finds them again from its modes.
 
-    Examples
-    --------
     >>> whole = np.zeros(4)
     >>> noted, memory = pack({"whole": whole, "half": whole[2:]})
     >>> list(memory), unpack(noted, memory)["half"].shape
@@ -167,26 +165,12 @@ def _alike(value: Any, parts: list[Any]) -> Any:
 
 
 def save(thing: Any) -> SavedState:
-    """Return the state of an object, and of the objects that it holds, in a form that a file can hold.
+    """Return the state of an object, and of the objects that it holds, in a form that a file can hold, for `restore`.
 
-    Parameters
-    ----------
-    thing
-        An object whose attributes are numbers, texts, arrays, lists, tuples, dictionaries with text keys, generators
-        of random numbers, or plain objects of these. Functions are left out, since they do not change with time.
+    Its attributes may be numbers, texts, arrays, lists, tuples, dictionaries with text keys, generators of random
+    numbers, or plain objects of these; anything else is refused by name. Functions are left out: they do not change
+    with time.
 
-    Returns
-    -------
-    SavedState
-        The argument for `restore`.
-
-    Raises
-    ------
-    RefusedError
-        If the object holds something else; the message names it.
-
-    Examples
-    --------
     >>> from atmosbox.engine import Course
     >>> course = Course(10.0)
     >>> at_rest = save(course)
@@ -230,13 +214,7 @@ def save(thing: Any) -> SavedState:
 
 
 def restore(thing: Any, saved: SavedState) -> None:
-    """Put an object back into a saved state: its own, or that of an object that was made in the same way.
-
-    Raises
-    ------
-    RefusedError
-        If the object was not made in the same way.
-    """
+    """Put an object back into a saved state: its own, or that of an object made in the same way; refuse any other."""
     room = _Room(saved.memory)
 
     def into(held: dict[str, Any], codes: dict[str, Any]) -> None:

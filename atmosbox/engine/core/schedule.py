@@ -38,15 +38,8 @@ class Ramp:
 
 
 def as_schedule(value: "float | Schedule", name: str) -> list[tuple[float, float]]:
-    """Return the corners of a number or a schedule, checked.
+    """Return the corners of a number or a schedule; refuse what is not finite and above 0, and times that decrease.
 
-    Raises
-    ------
-    RefusedError
-        If a corner is not finite, its value is not above 0, or times decrease.
-
-    Examples
-    --------
     >>> as_schedule(1.5, "kT of a wall")
     [(0.0, 1.5)]
     """
@@ -65,8 +58,6 @@ def as_schedule(value: "float | Schedule", name: str) -> list[tuple[float, float
 def interpolate(x, xs, ys):
     """Return y at x, interpolated linearly between the points (xs, ys) and constant beyond both ends.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> float(interpolate(1.5, np.array([1.0, 2.0]), np.array([0.0, 4.0])))
     2.0

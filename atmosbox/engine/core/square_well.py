@@ -36,33 +36,14 @@ class Well(namedtuple("Well", "core edge depth")):
 
 @kernel
 def time_to_crossing(r, u, well, inside, within):
-    r"""Return how long it takes a pair to reach its core or the edge of its well, if that happens soon.
+    """Return how long it takes a pair to reach its core or the edge of its well, and the event.
 
-    Parameters
-    ----------
-    r, u : (axis,)
-        Position [length] and velocity [length/time] of one molecule relative to the other, tuples.
-    well
-        The law of the pair, a `Well`.
-    inside
-        Whether the pair is inside the well now.
-    within
-        How far ahead to look [time from now]; a later event may be returned as never.
+    The event is `CORE`, `CAPTURE` or `RELEASE`. The time is ``inf`` for never, and may be for an event later than
+    ``within`` [time from now]. Most pairs reach neither so soon. One test without a root or a division rejects them: it
+    computes the distance that the pair would have then. Both roots are written without cancellation. A pair that
+    rounding has put on the wrong side of the core or edge has its event at once. A pair inside whose path would lie
+    outside the edge altogether, by rounding, has its event where the two are nearest. So no event is lost.
 
-    Returns
-    -------
-    (float, int)
-        Time from now [time], ``inf`` for never; and the event: `CORE`, `CAPTURE` or `RELEASE`.
-
-    Notes
-    -----
-    Most pairs reach neither so soon. One test without a root or a division rejects them: it computes the distance that
-    the pair would have then. Both roots are written without cancellation. A pair that rounding has put on the wrong
-    side of the core or edge has its event at once. A pair inside whose path would lie outside the edge altogether, by
-    rounding, has its event where the two are nearest. So no event is lost.
-
-    Examples
-    --------
     From a distance of 3 at unit speed to the edge at 1.5; from there to the core; from the core outwards to the edge:
 
     >>> well = Well(core=1.0, edge=2.25, depth=1.0)
@@ -101,29 +82,11 @@ def time_to_crossing(r, u, well, inside, within):
 
 @kernel
 def resolve_crossing(r, u, which, mass, other_mass, depth):
-    r"""Return the change of velocity of the first molecule of a pair at the core or edge, and the event.
+    """Return the change of velocity of the first molecule of a pair at the core or edge, and the event.
 
-    Parameters
-    ----------
-    r, u : (axis,)
-        Position [length] and velocity [length/time] of the molecule relative to its partner, tuples.
-    which
-        `CORE`, `CAPTURE` or `RELEASE`.
-    mass, other_mass, depth
-        Mass of the molecule and of its partner [mass]; depth of the well [energy].
+    The event is one of the four in the table above. The change of its partner is -mass / other_mass times this. u_n is
+    computed with the actual distance, equal to sigma or lambda sigma to rounding only: this conserves energy.
 
-    Returns
-    -------
-    (tuple, int)
-        Change of its velocity [length/time], the partner's being -mass / other_mass times this; and which of the four
-        events it was.
-
-    Notes
-    -----
-    u_n is computed with the actual distance, equal to sigma or lambda sigma to rounding only: this conserves energy.
-
-    Examples
-    --------
     Two molecules of unit mass that meet with a relative velocity of 2 are captured and go on with sqrt(8); a pair that
     moves apart with 1.9 bounces back:
 

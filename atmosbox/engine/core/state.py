@@ -156,8 +156,6 @@ class Gas(namedtuple("Gas", "molecules events kinds cells calendar box walls tal
 def aligned_records(number: int, dtype: np.dtype[Any]) -> Any:
     """Return a zeroed record array that starts on a cache line.
 
-    Examples
-    --------
     >>> aligned_records(3, MOLECULE).ctypes.data % 64
     0
     """

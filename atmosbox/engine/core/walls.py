@@ -67,22 +67,8 @@ _LAWS = {Specular: SPECULAR, Periodic: PERIODIC, HeatBath: HEAT_BATH, Piston: PI
 
 
 def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
-    """Return the six walls as arrays, after checking them.
+    """Return the six walls, in the order of `WALL_NAMES`, as arrays; what is impossible is refused.
 
-    Parameters
-    ----------
-    walls
-        Six laws in the order of `WALL_NAMES`.
-    height
-        Height of the ceiling [length].
-
-    Raises
-    ------
-    RefusedError
-        If a law is not possible for its wall, or one of its numbers is impossible.
-
-    Examples
-    --------
     >>> new_walls((Specular(),) * 5 + (Piston(0.1),), 2.0).piston
     array([2. , 0.1, 0. ])
     """
@@ -142,8 +128,6 @@ def first_bath_kT(walls: Walls) -> list[float]:
 def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     """Return the temperature of a wall [energy] at a time [time] since the start.
 
-    Examples
-    --------
     >>> from atmosbox.engine.core.schedule import Ramp
     >>> bath = HeatBath(Ramp(1.0, 3.0, start=0.0, end=10.0))
     >>> float(wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0))
@@ -157,22 +141,9 @@ def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
 def resolve_wall_hit(wall, time, velocity, spin, kind, walls, planar, state):
     """Return velocity and rotational energy after a wall hit, and the change of the velocity along the wall's axis.
 
-    Parameters
-    ----------
-    wall, time
-        The wall that is hit, and the time of the hit [time since the start].
-    velocity : (axis,)
-        Velocity before the hit, a tuple [length/time].
-    spin
-        Rotational energy [energy].
-    kind
-        Mass [mass] and rotational degrees of freedom of the molecule, a tuple.
-    walls, planar, state
-        The walls, whether the gas is in a plane, so that the y velocity stays zero, and the state of the random
-        numbers, which is advanced.
+    ``spin`` is the rotational energy before; ``kind`` are mass and rotational degrees of freedom of the molecule. In a
+    plane gas the y velocity stays zero. The state of the random numbers is advanced.
 
-    Examples
-    --------
     A piston that recedes at 1 slows a molecule from a speed of 3 to 1:
 
     >>> walls = new_walls((Specular(),) * 5 + (Piston(1.0),), 2.0)

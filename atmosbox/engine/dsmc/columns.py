@@ -1,13 +1,10 @@
 """Molecules as a structure of arrays, sorted into cells, for an engine that draws collision partners at random.
 
 Each property of all molecules is one array (a column), so that a loop over molecules reads memory in order and the
-compiler can compute eight of them at once. The molecules of each cell must be known: in every step they are *counted*
-by cell and an index of them is written in the order of cells (a counting sort that keeps their order within a cell).
-Now and then the columns themselves are put in that order, so that the molecules of a cell are near each other in
-memory, too.
-
-Every thread takes a share of the molecules, one stretch of the columns. It counts its own, and its places in
-the index follow those of the threads before it: the index is the same for any number of threads.
+compiler can compute eight of them at once. In every step molecules are *counted* by cell and an index of them is
+written in the order of cells (a counting sort that keeps their order within a cell); now and then the columns
+themselves are put in that order. Every thread counts one stretch of the columns, and its places in the index follow
+those of the threads before it: the index is the same for any number of threads.
 """
 
 import functools
@@ -105,11 +102,6 @@ def new_columns(number: int, many: int) -> list[Any]:
     Each begins at a line of the cache, so that eight numbers that are read together are one line. Each begins at
     another place within a page than the one before it, as data at the same place of different pages compete for the
     same few lines.
-
-    Examples
-    --------
-    >>> [column.ctypes.data % 64 for column in new_columns(1000, 2)]
-    [0, 0]
     """
     stride = -(-number // _PAGE) * _PAGE + _PAGE // 8 + _LINE
     room = np.empty(many * stride + _LINE)
@@ -145,8 +137,6 @@ def new_grid(numbers: tuple[int, int, int], threads: int) -> Grid:
 def share_of(thread, threads, number):
     """Return the first slot of a thread's share of the molecules, and the slot after its last: whole blocks.
 
-    Examples
-    --------
     >>> [share_of(t, 2, 5000) for t in range(2)]
     [(0, 2048), (2048, 5000)]
     """
@@ -217,11 +207,8 @@ def reserve_places(grid, cells):
 def share_cells(first, cells, cut):
     """Divide the cells into stretches, one for each thread, with about the same number of possible pairs.
 
-    So molecules that are near each other in memory are computed by the same thread when they move and collide.
-
-    Examples
-    --------
-    Ten molecules in one cell are more work than ten molecules in ten cells:
+    So molecules that are near each other in memory are computed by the same thread when they move and collide. Ten
+    molecules in one cell are more work than ten molecules in ten cells:
 
     >>> cut = np.zeros(3, np.int64)
     >>> share_cells(np.array([0, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]), 11, cut)

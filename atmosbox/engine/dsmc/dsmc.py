@@ -60,15 +60,7 @@ _SHARED = 8  # number of steps after which cells are shared again among threads;
 def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: str) -> tuple[int, int, int]:
     """Return the number of cells with about this edge [length] along each side [length] of a box.
 
-    Raises
-    ------
-    RefusedError
-        If there are so few molecules that hardly any share a cell; the message repeats what was ``asked`` for.
-
-    Examples
-    --------
-    >>> numbers_of_cells(1000, (10.0, 10.0, 1.0), 2.0, "occupancy = 10")
-    (5, 5, 1)
+    If hardly any molecules would share a cell they are refused; the message repeats what was ``asked`` for.
     """
     x, y, z = (max(1.0, float(np.rint(side / edge))) for side in sides)
     if x * y * z > max(number, 1000) * 10.0:
@@ -166,13 +158,8 @@ def _settle(workspace, tallies, threads, piston):
 def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = False) -> Any:
     """Return the kernel that advances by time steps.
 
-    Parameters
-    ----------
-    rotates, parallel
-        Whether molecules rotate, and whether several threads share the work.
-    wet, pool
-        Whether there is liquid, so that there are several kinds of molecules, which enter and leave the gas; and
-        whether the floor is the surface of the liquid.
+    In a ``wet`` box there is liquid, so that there are several kinds of molecules, which enter and leave the gas; with
+    a ``pool`` the floor is the surface of the liquid.
     """
     features = Features(rotates, wet, pool)
 

@@ -206,8 +206,6 @@ def mist_step(step, air, features):
 def fill_holes(last, columns, left, water, rotates):
     """Move the last molecules into the holes before them; ``last`` is the slot after the last one in use.
 
-    Examples
-    --------
     The first and the third of four have left: the fourth takes the place of the first.
 
     >>> import numpy as np

@@ -1,12 +1,10 @@
-r"""Which molecules of a cell collide: pairs are drawn for many cells at a time, then resolved one after the other.
+"""Which molecules of a cell collide: pairs are drawn for many cells at a time, then resolved one after the other.
 
 A processor predicts the result of a comparison and goes on. Random draws cannot be predicted, and after a wrong
-prediction the work that it has begun is lost. So decisions by chance are separated from the long computations: first
-the number of tries of each cell is written down, then the pair that each try draws, in a loop without a branch; only
-then are the pairs resolved, after their molecules have been fetched from memory in the meantime.
-
-Random numbers are words scrambled by splitmix64 (`random`), keyed by seed, step and cell: those of a cell depend
-neither on other cells nor on the thread that computes it.
+prediction the work that it has begun is lost. So the number of tries of each cell is written down first, then the pair
+that each try draws, in a loop without a branch; only then are the pairs resolved, their molecules having been fetched
+from memory in the meantime. Random numbers are keyed by seed, step and cell: those of a cell depend neither on other
+cells nor on the thread that computes it.
 """
 
 import math

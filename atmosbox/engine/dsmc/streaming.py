@@ -1,12 +1,11 @@
-r"""A step of free flight for many molecules at once, with all wall hits on the way.
+"""A step of free flight for many molecules at once, with all wall hits on the way.
 
-Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark
-those that need more work because of a wall. There are two cases. Smooth walls at rest that face each other only
-mirror: flight along their axis goes on beyond the wall and is *folded* back, and only the impulse remains to be
-tallied. Before any other wall a molecule *waits*: it flies last, alone, from wall to wall. Each
-hit happens at its exact time and place, and a molecule emitted by a heat bath flies for *the rest of the step*. If it
-were emitted at the end of the step instead, there would be too few slow molecules near the wall, and the gas would be
-too hot.
+Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark those that
+need more work because of a wall. Between smooth walls at rest that face each other flight goes on beyond the wall and
+is *folded* back; only the impulse remains to be tallied. Before any other wall a molecule *waits*: it flies last,
+alone, from wall to wall. Each hit happens at its exact time and place, and a molecule emitted by a heat bath flies for
+*the rest of the step*. If it were emitted at the end of the step instead, there would be too few slow molecules near
+the wall, and the gas would be too hot.
 """
 
 import math
@@ -28,19 +27,6 @@ _MOST_HITS = 1000
 def wait_at_walls(x, v, low, high, dt, mark):
     """Mark as waiting the molecules that would leave an interval [length] within a step of dt [time].
 
-    Parameters
-    ----------
-    x, v : (molecule,)
-        Coordinates [length] and velocities [length/time].
-    low, high
-        The interval [length].
-    dt
-        Length of the step [time].
-    mark : (molecule,)
-        `WAITS` for those that wait; it is changed.
-
-    Examples
-    --------
     >>> mark = np.zeros(2, np.int32)
     >>> wait_at_walls(np.array([1.0, 1.0]), np.array([0.5, 1.5]), 0.0, 2.0, 1.0, mark)
     >>> mark
@@ -78,8 +64,6 @@ def fold(x, v, dt, mark, sign, axis, cell):
 
     A molecule so fast that it is beyond the other wall after one folding is left there, for `mirror`.
 
-    Examples
-    --------
     The second molecule flies to 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
 
     >>> from atmosbox.engine.dsmc.columns import Axis
@@ -106,8 +90,6 @@ def mirror(p, x, v, wall, low, high, mass, counters):
 
     ``wall`` is the lower of the two walls; the ``counters`` are described at `bounce`.
 
-    Examples
-    --------
     A molecule that would fly four widths of its box, and was folded once, hit walls four times:
 
     >>> x, v, counters = np.array([-2.5]), np.array([-4.0]), np.zeros((3, 6))
@@ -151,26 +133,11 @@ def turn_round(x, v, dt, mark, axis, cell):
 
 @kernel
 def bounce(p, step, air, state, counters, features):
-    """Fly one molecule through a step from wall to wall, or as far as a pool.
+    """Fly a molecule through a step, or the rest of it, from wall to wall, or as far as a pool.
 
-    Parameters
-    ----------
-    p
-        Slot of the molecule.
-    step, air
-        The step, or the rest of it, and the data of the engine; if the molecule comes to a pool,
-        ``air.workspace.left`` gets the rest of the step [time].
-    state
-        State of the random numbers; it is advanced.
-    counters : (3, wall)
-        Outward impulse, energy given, hits; they are increased.
-    features
-        The features that the box requires.
-
-    Notes
-    -----
-    A molecule that hits walls a thousand times in one step, as on a floor near absolute zero, loses the rest of
-    that flight, but no energy.
+    At a pool ``air.workspace.left`` gets the rest of the step [time]. Outward impulse, energy given and hits are added
+    to ``counters : (3, wall)``. A molecule that hits walls a thousand times in one step, as on a floor near absolute
+    zero, loses the rest of that flight, but no energy.
     """
     columns, gas, box, walls = air.columns, air.gas, air.box, air.walls
     dt, ceiling = step.length, step.ceiling

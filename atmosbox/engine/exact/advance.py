@@ -1,13 +1,9 @@
 """Advance a box: the loop over events, and what happens between its stops.
 
-All times that the engine works with are local: they count from ``Walls.epoch``. When the next event lies further ahead
-of that than the length of an epoch, all clocks are set back by whole epochs.
-
-``clocks`` are the times of events that belong to no molecule: those of a liquid, or of a thermostat.
-
-The engine's loop stops on the way because an epoch of its clocks is over, the copies in the rows of cells are too old,
-a row is full, or the cells no longer fit the box. Python runs these functions as they are written, and the lab's page
-compiles them. If memory is too small, they return ``FULL``; Python makes more and calls again.
+All times are local: they count from ``Walls.epoch``. When the next event lies further ahead of that than the length of
+an epoch, all clocks are set back by whole epochs. ``clocks`` are the times of events that belong to no molecule: those
+of a liquid, or of a thermostat. Python runs these functions as they are written, and the lab's page compiles them. If
+memory is too small, they return ``FULL``; Python makes more and calls again.
 """
 
 import functools
@@ -39,8 +35,6 @@ def whole_epochs(ahead, length):
 
     The result depends on events alone, not on where a run is cut into pieces.
 
-    Examples
-    --------
     >>> whole_epochs(70.0, 32.0), whole_epochs(31.0, 32.0), whole_epochs(math.inf, 32.0)
     (64.0, 32.0, 0.0)
     """

@@ -12,14 +12,7 @@ from atmosbox.engine.core.state import Calendar
 
 
 def new_calendar(molecules: int) -> Calendar:
-    """Return an empty calendar, in which no molecule has an event.
-
-    Examples
-    --------
-    >>> calendar = new_calendar(20)
-    >>> next_event(calendar)[1]
-    inf
-    """
+    """Return an empty calendar, in which no molecule has an event."""
     groups = -(-max(molecules, 1) // 8)
     depth = max(1, (groups - 1).bit_length())
     leaf = -(-(2 ** (depth + 1)) // 8) * 8

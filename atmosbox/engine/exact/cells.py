@@ -48,13 +48,8 @@ class Grid(namedtuple("Grid", "number boundary first span last_slot spanning ima
 def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Sort radii into classes of about equal size (within a tenth), so that a thousand sizes need few tables.
 
-    Returns
-    -------
-    (ndarray, ndarray)
-        The class of each radius, and for each class a radius that none of its members exceeds [length].
+    Returns the class of each radius, and for each class a radius that none of its members exceeds [length].
 
-    Examples
-    --------
     >>> size_classes(np.array([1.0, 1.05, 2.0]))[0]
     array([0, 0, 1])
     """
@@ -81,31 +76,9 @@ def choose_grid(
 ) -> Grid:
     """Choose cells without copies: some two to eight molecules to a cell, layers thinner where gravity makes gas dense.
 
-    Parameters
-    ----------
-    length : (axis,)
-        Extent of the cells along each axis [length].
-    periodic
-        Which axes are periodic.
-    radii : (size,)
-        The radius of each size class [length].
-    molecules
-        Number of molecules.
-    exact_radius
-        Whether all molecules have exactly the same radius.
-    planar
-        Whether all centres lie in one plane y = constant.
-    filled
-        Height up to which there are molecules now [length].
-    open_top
-        Whether the ceiling moves, so that the uppermost cells must have no end.
-    scale_height
-        kT / m g, ``inf`` without gravity [length].
-
-    Raises
-    ------
-    RefusedError
-        If a periodic axis is so short that two molecules could touch each other on both sides at once.
+    There are molecules up to the height ``filled``. With an ``open_top`` the ceiling moves, so that the uppermost
+    cells have no end. ``exact_radius`` says that all radii are the same; ``scale_height`` is ``inf`` without gravity
+    [length]. A periodic axis so short that two molecules could touch each other on both sides at once is refused.
     """
     biggest = float(radii.max()) * MARGIN
     # the most cells along an axis that are wider than a molecule

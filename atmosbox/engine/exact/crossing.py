@@ -50,13 +50,7 @@ def is_wall(i, what, gas, modes):
 
 @kernel
 def cross(i, what, t, at, gas, modes):
-    """Move molecule i, whose `Motion` at time t is ``at``, across the boundary that it has reached; predict the next.
-
-    Returns
-    -------
-    Crossed
-        Whether it entered or left cells, or a row was full.
-    """
+    """Move molecule i, whose `Motion` at time t is ``at``, across a boundary; predict the next; return a `Crossed`."""
     cells = gas.cells
     axis = what >> 1
     up = what & 1

@@ -54,20 +54,9 @@ def new_rows(words: int) -> NDArray[np.uint32]:
 def new_cells(events: Any, sizes: int, words: int, most: int, radius: float, longest: float) -> Cells:
     """Return the memory of cells, whose tables are still empty.
 
-    Parameters
-    ----------
-    events
-        The events of all molecules, which hold the slots and the places.
-    sizes
-        Number of classes of sizes.
-    words
-        Number of words of all rows together.
-    most
-        Largest number of cells along an axis.
-    radius
-        The usual radius of a molecule [length].
-    longest
-        Greatest length of an epoch of the copies [time].
+    ``events`` hold the slots and the places of all molecules. All rows together have ``words`` words, an axis at most
+    ``most`` cells; ``radius`` is the usual one of a molecule, ``longest`` the greatest length of an epoch of the
+    copies.
     """
     row, n = new_rows(words), len(events)
     slot = np.ndarray((n, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2)) if n else np.zeros((0, 3), "u2")

@@ -42,26 +42,12 @@ class Event(NamedTuple):
 
 
 def time_to_close(a: float, b: float, c: float) -> float:
-    r"""Return when a gap :math:`a t^2 + b t + c` closes.
+    r"""Return when a gap :math:`a t^2 + b t + c` closes [time from now], ``inf`` for never.
 
-    Parameters
-    ----------
-    a, b, c
-        Half the acceleration with which the gap opens, the speed with which it opens, and its width now.
+    Then it is zero and shrinking: of the two roots this is the one where the slope is :math:`-\sqrt{b^2 - 4 a c}`,
+    whatever the sign of a, written so that no digits are lost by cancellation. It is 0 for a gap that rounding has
+    already closed, if it is still shrinking.
 
-    Returns
-    -------
-    float
-        Time from now [time] at which the gap is zero and shrinking, ``inf`` if it never is; 0 for a gap that
-        rounding has already closed, if it is still shrinking.
-
-    Notes
-    -----
-    Of the two roots this is the one where the slope is :math:`-\sqrt{b^2 - 4 a c}`, whatever the sign of a,
-    written so that no digits are lost by cancellation.
-
-    Examples
-    --------
     Thrown upward at unit speed in unit gravity, a ball is back on the floor after two units of time:
 
     >>> time_to_close(-0.5, 1.0, 0.0)
@@ -86,39 +72,9 @@ def time_to_close(a: float, b: float, c: float) -> float:
 class Reference:
     """A set of molecules with its box, advanced by the slow method.
 
-    It takes the arguments of `ParcelSet` below, and does not check them.
-
-    Parameters
-    ----------
-    position, velocity : (molecule, axis)
-        Centres [length] and velocities [length/time].
-    length
-        The three sides of the box [length]; along z, the height of the ceiling at the start.
-    walls
-        Six laws; a piston moves at its velocity for ever.
-    mass, diameter, rotation : (molecule,) or one number
-        Mass [mass], diameter [length], rotational degrees of freedom.
-    rotational_energy : (molecule,)
-        Rotational energy at the start [energy]; zero by default.
-    gravity
-        Downward acceleration [length/time^2].
-    planar
-        Whether this is a plane gas.
-    collision_number
-        Average number of contacts per exchange of energy with rotation.
-    seed
-        Seed of the random numbers.
-
-    Attributes
-    ----------
-    time
-        Time since the start [time].
-    position, velocity, rotational_energy
-        Positions, velocities and rotational energies of all molecules at that time.
-
-    Examples
-    --------
-    Two molecules that approach each other along x collide once and keep their energy:
+    It takes the arguments of `ParcelSet` below, and does not check them; a piston moves at its velocity for ever.
+    `time`, `position`, `velocity` and `rotational_energy` are those after the last event. Two molecules that approach
+    each other along x collide once and keep their energy:
 
     >>> pair = Reference([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
     >>> pair.step()

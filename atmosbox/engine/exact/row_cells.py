@@ -40,8 +40,6 @@ def filled_share(x, y, z, radius, molecules, planar):
 def cell_widths(x, y, z, cells, planar):
     """Return the width along each axis of ``cells`` cells, as cubic as possible; a shorter axis has one cell.
 
-    Examples
-    --------
     >>> [float(width) for width in cell_widths(8.0, 8.0, 1.0, 4, False)]
     [4.0, 4.0, 1.0]
     """
@@ -193,8 +191,6 @@ def write_even_layers(count, old, wanted, thinnest, edge):
     that none is thinner than ``thinnest`` [length]; 0 if the memory is too short for them, or if the fullest layer
     would be nearly as full as before.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> edge = np.zeros(6)
     >>> write_even_layers(np.array([6, 2]), np.array([0.0, 1.0, 2.0]), 4, 0.0, edge)

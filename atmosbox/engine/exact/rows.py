@@ -92,30 +92,13 @@ TINY = 1e-30
 
 
 def screen(values, first, mixed, place, velocity, since, slack, within):
-    """Return which of eight copies may be met; the module's docstring has the proof.
+    """Return which of eight copies may be met, bit k for the copy ``first + k``; the module's docstring has the proof.
 
-    Parameters
-    ----------
-    values : (word,)
-        The rows, read as float32.
-    first
-        Index of the first of them: x, y, z, vx, vy, vz and, if ``mixed``, their extents, eight numbers each.
-    mixed
-        Whether molecules differ in size.
-    place, velocity : (axis,)
-        Of the molecule that searches, relative to the centre of the cell; tuples of float32 [length, length/time].
-    since
-        Time since the start of the epoch, float32 [time].
-    slack
-        Reach of the molecule that searches (of the pair, unless ``mixed``) plus the slack e [length], the slack m
-        [length^2], and the largest r.v of a pair that approaches; a tuple of float32.
-    within
-        How far ahead to look, float32 [time from now].
-
-    Returns
-    -------
-    int64
-        Bit k is set if the copy ``first + k`` may be met.
+    ``values : (word,)`` are the rows, read as float32; from ``first`` on they hold x, y, z, vx, vy, vz and, if
+    ``mixed``, their extents, eight numbers each. ``place`` and ``velocity`` are those of the molecule that searches,
+    relative to the centre of the cell, ``since`` the time since the start of the epoch, ``within`` how far ahead to
+    look. ``slack`` is its reach (that of the pair, unless ``mixed``) plus the slack e [length], the slack m [length^2],
+    and the largest r.v of a pair that approaches. All are float32.
     """
     copies = values[int(first) : int(first) + 7 * BATCH].reshape(7, BATCH) if mixed else None
     if copies is None:
@@ -160,8 +143,6 @@ _DILUTE, _DENSE = 0.05, 0.2
 def row_stride(places, mixed):
     """Return the number of words in the row of a cell that has ``places`` places.
 
-    Examples
-    --------
     >>> row_stride(16, False), row_stride(32, True)
     (128, 272)
     """

@@ -167,19 +167,7 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
 def search(i, t, at, boundary, gas, modes):
     """Update the cells of molecule i, whose `Motion` at time t is ``at``, and search for its soonest contact.
 
-    Parameters
-    ----------
-    i, t, at
-        Index of the molecule, the time, and its `Motion`.
-    boundary
-        The boundary of a cell that it has reached, 0 to 5; `CONTACT` or more if its velocity may be new.
-    gas, modes
-        All data of the engine, and the flags of the scene.
-
-    Returns
-    -------
-    Found
-        Its `Motion`, its slots and its contact.
+    ``boundary`` is the boundary of a cell that it has reached, 0 to 5; `CONTACT` or more if its velocity may be new.
     """
     cells, copies = gas.cells, gas.cells.copies
     event = gas.events[i]

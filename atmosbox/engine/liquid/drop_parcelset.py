@@ -20,8 +20,6 @@ from atmosbox.engine.liquid.substance import Drops, Liquid
 class DropParcelSet(MoistParcelSet):
     """A set of molecules with its box and with drops in it, advanced exactly.
 
-    Examples
-    --------
     A nucleus catches a vapour molecule that hits it, and the molecule evaporates again:
 
     >>> from atmosbox.engine import Substance

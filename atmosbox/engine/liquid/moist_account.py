@@ -48,15 +48,7 @@ class MoistAccount(Parcel):
         self._same_size = bool(len(self._diameter)) and np.ptp(self._diameter) == 0.0
 
     def _open_reservoir(self, mass: Array, diameter: Array, rotation: Array, kind: NDArray[np.integer]) -> None:
-        """Make the reservoir of the liquid.
-
-        Parameters
-        ----------
-        mass, diameter, rotation : (kind,)
-            Mass [mass], diameter [length] and rotational degrees of freedom of each kind of molecule.
-        kind : (molecule,)
-            The kind of each molecule.
-        """
+        """Make the reservoir of the liquid, from the properties of each kind and the kind of each molecule."""
         liquid, substance = self._liquid, self._liquid.substance
         alike = (mass == substance.mass) & (diameter == substance.diameter) & (rotation == substance.rotation)
         vapour = int(np.flatnonzero(alike)[0]) if alike.any() else -1

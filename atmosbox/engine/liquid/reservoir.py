@@ -76,23 +76,11 @@ class Reservoir(
 def new_reservoir(
     liquid: Liquid, area: float, capacity: int, present: int, kind: int, mean_cube: float = 0.0
 ) -> Reservoir:
-    """Return the reservoir of a liquid.
+    """Return the reservoir of a liquid with a surface of this ``area`` [length^2].
 
-    Parameters
-    ----------
-    liquid
-        The liquid at the start.
-    area
-        Area of its surface [length^2].
-    capacity, present
-        Number of molecules in vapour, air and liquid, and number of those, the first ones, that are in the box.
-    kind
-        Index of the kind that the vapour is.
-    mean_cube
-        Mean cube of the diameters of all molecules [length^3].
+    It has room for ``capacity`` molecules of vapour, air and liquid, of which the first ``present`` are in the box; the
+    vapour is of a ``kind``, and ``mean_cube`` is the mean cube of all diameters [length^3].
 
-    Examples
-    --------
     >>> from atmosbox.engine.liquid.substance import Pool, Substance
     >>> water = Substance(0.62, 1.0, 20.0, 9.0, 1e6)
     >>> reservoir = new_reservoir(Pool(water, number=5, kT=2.0), 1.0, 8, 3, 0)

@@ -166,13 +166,7 @@ def _fly_to_walls(i, step, gas, modes):
 
 @kernel
 def fly(step, gas, modes):
-    """Move all molecules by one step; nearly all of them meet no wall.
-
-    Parameters
-    ----------
-    step, gas, modes
-        The step, the molecules with their box, and the flags of the scene: see `stepped`.
-    """
+    """Move all molecules by one step; nearly all of them meet no wall."""
     x, v, box = gas.position, gas.velocity, gas.box
     dt = step.length
     gain = box.gravity * dt if modes.gravity else 0.0

@@ -184,15 +184,7 @@ def _meet(i, j, r, step, gas, modes):
 
 @kernel
 def collide(high, step, gas, modes):
-    """Let all pairs that overlap collide.
-
-    Parameters
-    ----------
-    high
-        Height of the ceiling at the end of the step [length].
-    step, gas, modes
-        The step, the molecules with their box, and the flags of the scene: see `stepped`.
-    """
+    """Let all pairs that overlap collide; ``high`` is the height of the ceiling at the end of the step [length]."""
     if step.rule == INDEX_ORDER or step.rule == LOOK_AHEAD:
         _search_all(step, gas, modes)
     else:

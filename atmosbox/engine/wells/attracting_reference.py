@@ -24,19 +24,10 @@ _KINDS = {"contact": CORE, "capture": CAPTURE, "release": RELEASE}
 
 
 class AttractingReference(Reference):
-    """A box of a few molecules that attract each other.
+    """A box of a few molecules that attract each other, with the arguments of `Reference` and of `AttractingParcelSet`.
 
     Its additional kinds of events are "capture", "release" and "drawn": the bath draws a velocity again.
 
-    Parameters
-    ----------
-    position, velocity, length, box
-        As at `Reference`.
-    well, species, bath
-        As at `AttractingParcelSet`.
-
-    Examples
-    --------
     >>> pair = AttractingReference([[4, 5, 5], [7, 5, 5]], [[1, 0, 0], [-1, 0, 0]], length=(10,) * 3, well=SquareWell())
     >>> [pair.step().kind for _ in range(3)]
     ['capture', 'contact', 'release']

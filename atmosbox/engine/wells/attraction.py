@@ -81,18 +81,7 @@ class Bath(namedtuple("Bath", "clock rate schedule schedule_time schedule_kT hea
 
 
 def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
-    """Return range and depth as tables, (species, species), after checks; larger tables are cut to that size.
-
-    Raises
-    ------
-    RefusedError
-        If a table is too small or not symmetric, or a number in it is impossible.
-
-    Examples
-    --------
-    >>> well_table(SquareWell(range=1.5, depth=2.0), 1)
-    (array([[1.5]]), array([[2.]]))
-    """
+    """Return range and depth as tables, (species, species), after checks; larger tables are cut to that size."""
     limits = {"range": (1.0, _WIDEST), "depth": (0.0, math.inf)}
     tables = []
     for name, (least, most) in limits.items():
@@ -115,8 +104,6 @@ def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
 def new_wells(well: SquareWell, species: NDArray[np.int64], radius: Array) -> Wells:
     """Return the wells of the kinds of molecules: ``species : (kind,)`` and ``radius : (kind,)`` [length].
 
-    Examples
-    --------
     >>> wells = new_wells(SquareWell(1.5, [[1, 0], [0, 0]]), np.array([0, 1]), np.array([0.5, 0.5]))
     >>> wells.distance
     array([[1.5, 1. ],
@@ -140,13 +127,7 @@ def new_wells(well: SquareWell, species: NDArray[np.int64], radius: Array) -> We
 
 
 def new_bath(bath: RandomBath | None) -> Bath:
-    """Return a bath for the kernels, after checks; without a bath, one that never acts.
-
-    Examples
-    --------
-    >>> new_bath(None).rate
-    0.0
-    """
+    """Return a bath for the kernels, after checks; without a bath, one that never acts."""
     rate = 0.0 if bath is None else number(bath.rate, "rate of the random bath", least=0.0)
     corners = [(0.0, 1.0)] if bath is None else as_schedule(bath.kT, "kT of the random bath")
     return Bath(

@@ -63,14 +63,7 @@ class Vicinity(
 def new_vicinity(
     sides: NDArray[np.float64], periodic: tuple[bool, bool, bool], number: int, reach: float, *, planar: bool
 ) -> Vicinity:
-    """Return empty lists for ``number`` molecules whose attraction reaches as far as ``reach`` at most [length].
-
-    Examples
-    --------
-    >>> vicinity = new_vicinity(np.full(3, 10.0), (True,) * 3, 800, 1.5, planar=False)
-    >>> vicinity.number_x, round(float(vicinity.width[0]), 3)
-    (11, 0.875)
-    """
+    """Return empty lists for ``number`` molecules whose attraction reaches as far as ``reach`` at most [length]."""
     spacing = float(root(float(np.prod(sides if not planar else sides[[0, 2]])) / max(number, 1), 2 if planar else 3))
     widest = max(reach, spacing)
     # a path within two shells must not lead to another image than the nearest
@@ -304,19 +297,8 @@ def bring_back(i, at, gas):
 def renew(i, at, fresh, gas, modes):
     """Make the list of molecule i, whose `Motion` is ``at``, and its shell again.
 
-    Parameters
-    ----------
-    i, at
-        The molecule and its `Motion`, within the box: see `bring_back`.
-    fresh
-        Whether the distance decides if a pair that is new to the lists is inside its well; only at the start.
-    gas, modes
-        All data of the engine, and the flags of the scene.
-
-    Returns
-    -------
-    bool
-        Whether the lists must grow first, in which case nothing is changed.
+    Returns whether the lists must grow first; then nothing is changed. With ``fresh`` the distance decides if a pair
+    that is new to the lists is inside its well; only at the start.
     """
     vicinity = gas.vicinity
     gathered = _gather(i, at.x, at.y, at.z, gas, modes)

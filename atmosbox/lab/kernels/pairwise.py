@@ -28,8 +28,6 @@ def _lanes(values, k, last):
 def pairwise_sum(values, first, number):
     """Return the sum of ``number`` values from ``first`` on: of at most 128 in eight lanes and a rest, else by halves.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> float(pairwise_sum(np.arange(1000.0), 0, 1000))
     499500.0
