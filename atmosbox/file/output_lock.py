@@ -25,8 +25,6 @@ class OutputLock:
 
     The system holds the lock as long as the process lives, so a process that was killed leaves a file but no lock.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     lock = OutputLock(Path(folder, "run.nc"))

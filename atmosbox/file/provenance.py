@@ -61,8 +61,6 @@ def global_attributes(
     status
         ``complete``, ``partial`` or ``interrupted``.
 
-    Examples
-    --------
     >>> made = global_attributes({"scene": "temperature"}, title="A box", command="atmosbox run temperature")
     >>> made["Conventions"], made["atmosbox_parameters"]
     ('CF-1.11', '{"scene": "temperature"}')
@@ -91,8 +89,6 @@ def global_attributes(
 def parameters(dataset: xr.Dataset) -> dict[str, Any]:
     """Return everything that determines a run, so that it can be repeated.
 
-    Examples
-    --------
     >>> import xarray
     >>> made = global_attributes({"scene": "temperature"}, title="A box", command="a test")
     >>> parameters(xarray.Dataset(attrs=made))

@@ -62,8 +62,6 @@ class Variable:
     flags
         The meanings of the values 0, 1, 2, ... of a flag.
 
-    Examples
-    --------
     The file says that a pressure is the mean over its frame:
 
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure", cell_methods="elapsed_time: mean")
@@ -138,8 +136,6 @@ SUFFIXES = ("_se", "_count", "_theory", "_tolerance")
 def derived(parent: Variable, suffix: str) -> Variable:
     """Return the declaration of a variable's standard error, number of samples, answer of theory or tolerance.
 
-    Examples
-    --------
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure of the air on the walls")
     >>> derived(pressure, "_theory").long_name
     'answer of theory for the pressure of the air on the walls'
@@ -353,8 +349,6 @@ VARIABLES: dict[str, Variable] = {
 def variable(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> Variable:
     """Return the declaration of a variable, or of its standard error, number of samples, theory or tolerance.
 
-    Examples
-    --------
     The error of a temperature is a difference of temperatures, so 1 K is not -272.15 degC:
 
     >>> error = variable("air_temperature_se")

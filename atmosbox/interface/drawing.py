@@ -262,8 +262,6 @@ def show(
     SettingError
         If there is no run or more than two, or the theme or the language is unknown.
 
-    Examples
-    --------
     >>> import atmosbox as ab
     >>> ab.show(ab.run("temperature", molecules=50, duration="5 ns", save_molecules=False))
     Traceback (most recent call last):

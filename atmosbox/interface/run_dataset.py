@@ -17,8 +17,6 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
 
     In everything else it is an `xarray.Dataset`.
 
-    Examples
-    --------
     >>> import atmosbox
     >>> run = atmosbox.run("elastic-collisions", duration="2 s")
     >>> print(repr(run).splitlines()[2].split()[0], isinstance(run, xr.Dataset))
@@ -77,8 +75,6 @@ Show = Callable[[float, str], None]
 def in_notebook() -> bool:
     """Return whether this program runs in a notebook, whose cells show HTML.
 
-    Examples
-    --------
     >>> in_notebook()
     False
     """
@@ -90,8 +86,6 @@ def in_notebook() -> bool:
 def preformatted(text: str) -> str:
     """Return text as HTML that keeps its columns.
 
-    Examples
-    --------
     >>> preformatted("p < 1 bar").partition(">")[2]
     'p &lt; 1 bar</pre>'
     """

@@ -53,8 +53,6 @@ class Knob:
     ValueError
         If the value does not lie between the lowest and the highest.
 
-    Examples
-    --------
     >>> seen = []
     >>> Knob("temperature", "of the walls", "degC", 0.0, 100.0, 25.0, seen.append).set(50.0)
     >>> seen
@@ -103,8 +101,6 @@ def wall_temperature(
     low, high
         The range, in the unit of the setting; widened to include the value at the start.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("temperature", {"temperature": "20 degC"}))
     >>> [(knob.name, knob.value, knob.unit) for knob in setup.knobs]
@@ -121,8 +117,6 @@ def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float
 
     ``low`` and ``high`` are the range in the unit of the setting, above 0; it is widened to include the first value.
 
-    Examples
-    --------
     The work of a change is in the energy budget:
 
     >>> from atmosbox.simulation.preparation import build, prepare
@@ -157,8 +151,6 @@ def warmed_walls(
     low, high
         The range, in the unit of the setting; widened to include the value at the start.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("evaporation", {"molecules": 200, "pool": 40}))
     >>> bool(np.isnan(setup.parcel.wall_kT()).all())
@@ -183,8 +175,6 @@ def warmed_walls(
 def open_pool(parcel: Any) -> Knob:
     """Return the knob that covers a part of a pool, or all of it, with a foil; see `set_open_pool` of the box.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("evaporation", {"molecules": 300, "pool": 50}))
     >>> setup.knobs[1].set(0.0)
@@ -201,8 +191,6 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 
     ``height`` gives the height [m] after a share of the ascent, 0 to 1; it increases.
 
-    Examples
-    --------
     If the knob is not turned, the parcel rises to the top:
 
     >>> from atmosbox.simulation.preparation import build, prepare
@@ -225,8 +213,6 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 def way(parcel: Parcel, driver: FollowPressure) -> Knob:
     """Return the knob that moves a parcel back and forth along a path that goes up and down.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> [knob.name for knob in build(prepare("mountains", {"molecules": 200})).knobs]
     ['way']

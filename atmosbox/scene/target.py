@@ -68,8 +68,6 @@ def parse(text: object) -> Target:
     SettingError
         If it is neither.
 
-    Examples
-    --------
     >>> parse("lecture").limits, parse("0.5 K").kelvin, parse("2%").share
     ('1 % and 0.5 K', 0.5, 0.02)
     """

@@ -56,8 +56,6 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     The fonts are embedded, so that every character is shown on every computer and can be searched for. The file
     contains neither a date nor a random number.
 
-    Examples
-    --------
     >>> from atmosbox.sheet import worksheet
     >>> pdf(worksheet("lifting-dry")).pages
     2

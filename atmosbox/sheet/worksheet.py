@@ -32,8 +32,6 @@ MOST_SETTINGS = 6
 def left_out(story: str) -> str:
     r"""Return the part of a scene's docstring on what is left out and exaggerated; empty if there is none.
 
-    Examples
-    --------
     >>> left_out("Air rises.\n\nModelled: spheres.\nLeft out: water,\nwind. Exaggerated: the pace.")
     'Left out: water, wind. Exaggerated: the pace.'
     """
@@ -55,8 +53,6 @@ class AnyScene(NamedTuple):
     def fact(self, name: str) -> Any:
         """Return a text about the scene by name.
 
-        Examples
-        --------
         >>> from atmosbox.simulation import runner
         >>> AnyScene([Trial("A", "", runner.prepare("lifting-dry", {}))]).fact("quantity")
         'result'

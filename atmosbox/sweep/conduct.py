@@ -44,8 +44,6 @@ Done: TypeAlias = tuple[Task, str, list[str]]
 def cores() -> int:
     """Return the number of cores that this process may use.
 
-    Examples
-    --------
     >>> cores() >= 1
     True
     """

@@ -36,8 +36,6 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
     The standard error comes from the scatter of the members or, if there are fewer than `FEWEST`, from their own
     standard errors, because the scatter of so few says little. A value is NaN where there is none.
 
-    Examples
-    --------
     >>> mean, se = mean_and_error(np.array([[1.0, 3.0, 5.0, 3.0]]), np.full((1, 4), 9.0))
     >>> mean.tolist(), round(float(se[0]), 3)
     ([3.0], 0.816)

@@ -24,8 +24,6 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narr
     narrowest
         Least number of characters of a cell that is broken into lines; no word is broken.
 
-    Examples
-    --------
     >>> print("\n".join(table(["quantity", "theory"], [["temperature [degC]", "15.0"]], 80)))
     quantity            theory
     temperature [degC]  15.0
@@ -88,8 +86,6 @@ def story(text: str, width: int) -> list[str]:
 
     The backquotes around code are left out.
 
-    Examples
-    --------
     >>> story("Air that\n``rises`` cools.\n\n    T ~ p^(2/7)", 80)
     ['Air that rises cools.', '', '    T ~ p^(2/7)']
     """
@@ -107,8 +103,6 @@ def number(value: float, decimals: int | None = None, power: int = 0, sign: str 
     Negative decimals round to tens or hundreds. The power of ten is taken out: 9 shows 1.5e9 as 1.5 and "e9". The sign
     "+" shows that of a positive number too.
 
-    Examples
-    --------
     >>> number(288.149, 2), number(12345.0, -2), number(1.5e9, 1, 9, "+")
     ('288.15', '12300', '+1.5e9')
     """
@@ -126,8 +120,6 @@ def digits(value: float, error: float) -> tuple[int | None, int]:
     Two digits of the standard error are shown; decimals are None if there is none. The power is zero for numbers that
     are easy to read without it.
 
-    Examples
-    --------
     >>> digits(288.149, 0.0312), digits(1.5e9, 2e7), digits(3.0, 0.0)
     ((3, 0), (3, 9), (None, 0))
     """
@@ -142,8 +134,6 @@ def digits(value: float, error: float) -> tuple[int | None, int]:
 def measurement(value: float, error: float) -> str:
     """Return a measurement with its standard error as text.
 
-    Examples
-    --------
     >>> measurement(288.149, 0.0312), measurement(1.52345e9, 2e7), measurement(15.0, 0.0)
     ('288.149 ± 0.031', '(1.523 ± 0.020)e9', '15')
     """

@@ -84,8 +84,6 @@ def entropy_gain(cloud: Cloud) -> Gain:
 def gathered(rate: Array, moment: Array) -> Array:
     """Return the integral of a rate up to each moment, from the start at zero.
 
-    Examples
-    --------
     >>> gathered(np.array([2.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]))
     array([2., 4., 7.])
     """
@@ -119,8 +117,6 @@ class Parcels(NamedTuple):
 def draw(ascent: MoistAscent, pressure: Array, frames: int, samples: int, *, ideal: bool) -> Parcels:
     """Return parcels at pressures of the environment in the middle of each recorded frame : (frame,) [Pa].
 
-    Examples
-    --------
     Chance leaves a parcel of the scene lifting-moist some tenths of a kelvin warmer or colder at the top:
 
     >>> from atmosbox import scenarios

@@ -95,8 +95,6 @@ class Cloud:
         Molecules of liquid that the cloud holds before it rains, infinite if it does not rain; and the rate at which
         each molecule in excess falls out.
 
-    Examples
-    --------
     In the cloud of the scene lifting-moist the number of liquid molecules scatters by a dozen at 700 hPa:
 
     >>> from atmosbox import scenarios
@@ -217,8 +215,6 @@ def _counted(vapour: Array, liquid: Array, humidity: Array, warming: Array) -> t
     One more is as likely as the relative humidity says; each molecule that joins is missing in the vapour, and warms
     the air. So :math:`P(n + 1) / P(n) = f \, (v + l - n) / v \, e^{-b (n + 1/2 - l)}`.
 
-    Examples
-    --------
     In clear air the mean is RH / (1 - RH), in a cloud that of theory:
 
     >>> many, few = np.array([1e6]), np.array([1e-5])

@@ -179,8 +179,6 @@ class MoistAscent:
 def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "the pressure at the ground") -> None:
     """Refuse an ascent that does not go up.
 
-    Examples
-    --------
     >>> refuse_descent(990.0, 1000.0)
     Traceback (most recent call last):
         ...
@@ -195,8 +193,6 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
 def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     """Refuse a dewpoint above the temperature, both in degC.
 
-    Examples
-    --------
     >>> refuse_supersaturation(26.0, 25.0)
     Traceback (most recent call last):
     ...

@@ -49,8 +49,6 @@ class DropGrowth:
     tension
         Surface tension [N/m].
 
-    Examples
-    --------
     Without salt, drops of sixty molecules evaporate completely at a humidity of 250 %:
 
     >>> growth = DropGrowth(MoistBox(6000, 293.15, 1e4, 2.5), (DropKind(2, 0.0, 3e-29),), 60, 3.0, 0.0727)

@@ -31,8 +31,6 @@ class MoistBox:
     ideal
         Whether molecules have no volume.
 
-    Examples
-    --------
     The excess over saturation condenses; with fewer molecules it fluctuates more:
 
     >>> box = MoistBox(10_000, 293.15, 1e5, 1.5)
@@ -118,8 +116,6 @@ class MoistBox:
         The volume of real molecules is too small to show this: drops s times too wide have s^3 times the volume. The
         last factor counts the ways to divide L molecules among D drops; an empty drop has none to lose.
 
-        Examples
-        --------
         >>> air = MoistBox(10_000, 293.15, 1e5, 1.5)
         >>> [round(float(air.over_drops(300, 1, size * 0.52)), 3) for size in (1, 6, 8)]
         [1.001, 1.176, 1.467]

@@ -105,8 +105,6 @@ class AirOverPool:
     def vapour_pressure_at(self, temperature: float) -> float:
         """Return the vapour pressure between walls of a temperature [K]: saturation, or that of all the water [Pa].
 
-        Examples
-        --------
         A small pool in a warm room dries up:
 
         >>> room = AirOverPool(1000, 10, 3.7e-10, 293.15, 1e5, 1000.0)

@@ -67,8 +67,6 @@ def igra(text: Text) -> Table | None:
     The columns have fixed widths (``igra2-data-format.txt``, doi:10.7289/V5X63K0Q): pressure [Pa], temperature and
     dewpoint depression [0.1 K]; -8888 marks a value that failed a quality check.
 
-    Examples
-    --------
     A level at the surface, 972 hPa, with 24.3 degC and a dewpoint 5.1 K below:
 
     >>> head = "#USM00072357 2014 09 10 00 2301    1 ncdc-gts ncdc-gts  352211   -974647"
@@ -104,8 +102,6 @@ def bufkit(text: Text) -> Table | None:
     The values of a level may fill several lines: they are told apart by their number, not by their position (GEMPAK's
     ``namsnd``).
 
-    Examples
-    --------
     >>> lines = '''SNPARM = PRES;TMPC;DWPC;HGHT
     ... STID = KOUN STNM = 723570 TIME = 140910/0000
     ... PRES TMPC DWPC
@@ -145,8 +141,6 @@ def bufkit(text: Text) -> Table | None:
 def sharppy(text: Text) -> Table | None:
     """Return the table of SHARPpy's text between %RAW% and %END%, below the names of the columns and a title.
 
-    Examples
-    --------
     >>> lines = ["%RAW%", " 989.00, 210.00, 32.60, 23.60, 265.00, 10.00", "%END%"]
     >>> sharppy(Text(lines, "bna.txt", "bna")).values["temperature"]
     array([32.6])
@@ -175,8 +169,6 @@ def wyoming(text: Text) -> Table | None:
     Columns are seven characters wide and may be blank: below the ground, and above the last report of humidity or wind.
     The indices after the table are not read.
 
-    Examples
-    --------
     >>> lines = ["   PRES   HGHT   TEMP   DWPT", "    hPa     m      C      C ", " 1000.0     -7"]
     >>> wyoming(Text([*lines, "  959.0    345   22.2   19.0"], "oun.txt", "oun")).values["temperature"]
     array([ nan, 22.2])
@@ -218,8 +210,6 @@ def delimited(text: Text) -> Table | None:
 
     The units are written with the names. Lines that start with # are comments.
 
-    Examples
-    --------
     >>> delimited(Text(["T_K,p/hPa,Td_K", "298,1000,290"], "a.csv", "a")).values["pressure"]
     array([1000.])
     """

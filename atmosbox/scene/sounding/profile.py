@@ -132,8 +132,6 @@ class Sounding:
 def widest_gap(pressure: Floats) -> tuple[float, int]:
     """Return the widest gap between two levels below the 300 hPa surface [Pa], and the index of the level below it.
 
-    Examples
-    --------
     >>> widest_gap(np.array([1000e2, 850e2, 700e2, 500e2, 250e2, 20e2]))
     (25000.0, 3)
     """
@@ -145,8 +143,6 @@ def widest_gap(pressure: Floats) -> tuple[float, int]:
 def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
     """Return what is doubtful in a possible sounding, one sentence each.
 
-    Examples
-    --------
     A level at 300 hPa with 0 degC instead of -43.5 degC:
 
     >>> p = np.array([1000e2, 850e2, 700e2, 500e2, 400e2, 300e2, 250e2])
@@ -178,8 +174,6 @@ def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
 def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, place: Place) -> None:
     """Refuse levels that do not make an ascent: too few, not in order, a dewpoint above its temperature, a wide gap.
 
-    Examples
-    --------
     >>> p = np.array([1000e2, 900e2, 950e2, 700e2, 500e2])
     >>> check_levels(p, np.full(5, 280.0), np.full(5, 270.0), lambda level: f"a.csv, line {level + 2}")
     Traceback (most recent call last):
