@@ -54,10 +54,6 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
 
     Return the file to write: the path, or what it points to if it is a symbolic link. `example` is the file name that a
     message suggests.
-
-    >>> check_writable("no/such/folder/run.nc")
-    Traceback (most recent call last):
-    atmosbox.errors.FileError: The folder no/such/folder does not exist: type mkdir -p no/such/folder first.
     """
     if not os.fspath(path).strip():
         raise FileError("The name of the file is empty", "give one, such as ", Option("out", example))
@@ -139,13 +135,6 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
     is killed leaves the temporary file, which the next program that writes the same file removes: see `clear`.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with whole_file(Path(folder, "a.txt")) as temporary:
-    ...         written = temporary.write_text("air")
-    ...     [file.name for file in Path(folder).iterdir()]
-    ['a.txt']
     """
     clear(path)
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")

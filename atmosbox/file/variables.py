@@ -36,12 +36,10 @@ class Variable:
 
     Parameters
     ----------
-    name, dims
-        Its name in the file and the names of its dimensions, none for a single number.
+    name, dims, long_name
+        Its name in the file, the names of its dimensions, and what it is in words.
     units
         Its SI unit as UDUNITS writes it; empty for labels and flags, which have none.
-    long_name
-        What the variable is, in words.
     standard_name
         Its name in the CF standard name table, if the table has one and no other variable here uses it.
     cell_methods
@@ -57,10 +55,8 @@ class Variable:
     coordinate
         Whether the variable is an auxiliary coordinate, such as the pressure of the parcel: other variables can be
         drawn against it.
-    comment
-        What else a reader must know.
-    flags
-        The meanings of the values 0, 1, 2, ... of a flag.
+    comment, flags
+        What else a reader must know; the meanings of the values 0, 1, 2, ... of a flag.
 
     The file says that a pressure is the mean over its frame:
 

@@ -13,9 +13,7 @@ _WIDTH = 110
 
 
 class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
-    """The dataset of a run, which prints its headline table before its variables.
-
-    In everything else it is an `xarray.Dataset`.
+    """An `xarray.Dataset` of a run, which prints its headline table before its variables.
 
     >>> import atmosbox
     >>> run = atmosbox.run("elastic-collisions", duration="2 s")
@@ -73,11 +71,7 @@ Show = Callable[[float, str], None]
 
 
 def in_notebook() -> bool:
-    """Return whether this program runs in a notebook, whose cells show HTML.
-
-    >>> in_notebook()
-    False
-    """
+    """Return whether this program runs in a notebook, whose cells show HTML."""
     ipython = sys.modules.get("IPython")  # a notebook has imported IPython
     shell = ipython.get_ipython() if ipython is not None else None
     return getattr(shell, "kernel", None) is not None

@@ -170,16 +170,9 @@ def declared_unit(unit: str) -> Unit:
 
 
 def to_si(value: float, unit: str, *, difference: bool = False) -> float:
-    """Return a value in SI units.
+    """Return a value in SI units; ``unit`` is "hPa", "degC", "K/km", "%", "1" for a pure number, or any other.
 
-    Parameters
-    ----------
-    value
-        A number in `unit`.
-    unit
-        The unit, such as "hPa", "degC", "K/km", "%", or "1" for a pure number.
-    difference
-        Whether the value is a difference or an error bar: one of 2 degC is one of 2 K, not of 275.15 K.
+    A ``difference``, which may be an error bar, is converted without an offset: one of 2 degC is one of 2 K.
 
     >>> to_si(25.0, "degC"), to_si(1013.25, "hPa"), to_si(0.5, "degC", difference=True)
     (298.15, 101325.0, 0.5)
@@ -190,15 +183,6 @@ def to_si(value: float, unit: str, *, difference: bool = False) -> float:
 
 def from_si(value: float, unit: str, *, difference: bool = False) -> float:
     """Return a value in SI units in another unit; the inverse of :func:`to_si`.
-
-    Parameters
-    ----------
-    value
-        A number in Pa, K, K m-1, 1, ...
-    unit
-        The unit wanted.
-    difference
-        Whether the value is a difference or an error bar, to which no offset is added.
 
     >>> from_si(298.15, "degC"), from_si(0.0098, "K/km")
     (25.0, 9.8)

@@ -92,14 +92,9 @@ def wall_temperature(
 ) -> Knob:  # fmt: skip
     """Return the knob that sets the temperature of the heat baths of a box.
 
-    Parameters
-    ----------
-    name
-        The setting whose value is the value at the start.
-    wall
-        The number of the wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if None.
-    low, high
-        The range, in the unit of the setting; widened to include the value at the start.
+    It is called ``name``, as the setting that has its first value. ``wall`` is the number of the wall, in the order of
+    `atmosbox.engine.core.walls.WALL_NAMES`, None for all heat baths. The range from ``low`` to ``high``, in the unit of
+    the setting, is widened to include the first value.
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("temperature", {"temperature": "20 degC"}))
@@ -139,17 +134,9 @@ def warmed_walls(
     """Return the knob that turns smooth walls into heat baths at its first turn, and sets their temperature.
 
     Until then the walls are those of the scene, so that a run in which no knob is turned is that of ``atmosbox run``.
-
-    Parameters
-    ----------
-    name, help
-        The setting whose value is the value at the start, and what the knob is, in one line.
-    walls
-        Numbers of the walls, in the order of `atmosbox.engine.core.walls.WALL_NAMES`.
-    kT
-        The temperature of the walls [reduced energy] for a value of the knob in SI units.
-    low, high
-        The range, in the unit of the setting; widened to include the value at the start.
+    ``name``, ``low`` and ``high`` are as in `wall_temperature`, ``walls`` are the numbers of the walls, and ``help``
+    says in one line what the knob is. ``kT`` gives the temperature of the walls [reduced energy] for a value in SI
+    units.
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("evaporation", {"molecules": 200, "pool": 40}))

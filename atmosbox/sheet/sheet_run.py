@@ -17,18 +17,9 @@ _LETTERS = "ABCD"
 
 @dataclass(frozen=True)
 class Trial:
-    """A run of a sheet, made or not yet made.
+    """A run of a sheet: its letter, what differs in it, the scene with its settings, and its results.
 
-    Parameters
-    ----------
-    letter
-        Its letter in the sheet.
-    title
-        A short text on what differs in it.
-    prepared
-        The scene with its settings.
-    outcome
-        Its results; None before the run was made.
+    The ``outcome`` is None before the run was made.
     """
 
     letter: str

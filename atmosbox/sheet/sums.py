@@ -95,14 +95,7 @@ class SetNumber(float):
 
 
 class Measured(Variable):  # type: ignore[misc]
-    """A number with its standard error, which is propagated through a sum, and with its value in theory.
-
-    Parameters
-    ----------
-    value, error
-        The number and its standard error.
-    theory
-        Its value in theory; None if there is no theory of it.
+    """A number with its standard error, which is propagated through a sum, and its value in theory, None without one.
 
     >>> warm, cold = Measured(25.0, 3.0), Measured(20.0, 4.0)
     >>> print(warm - cold, 2.0 * warm, warm - warm)
@@ -227,7 +220,7 @@ def check(text: str) -> list[str | ast.expr]:
     >>> check("{% for i in (1, 2) %}again{% endfor %}")
     Traceback (most recent call last):
     atmosbox.errors.ConfigError: its sums cannot be understood (a brace that is not closed, a statement, or more than \
-    4000 characters): write sums as {{ 2 * 3 }}
+4000 characters): write sums as {{ 2 * 3 }}
     """
     pieces = _SUM.split(text)
     try:
@@ -239,25 +232,14 @@ def check(text: str) -> list[str | ast.expr]:
 
 
 def filled(text: str, names: Mapping[str, Facts], *, setting: bool = False) -> str:
-    """Return a text with its sums worked out.
+    """Return a text with its sums worked out; ``names`` are the runs by their letters.
 
-    Parameters
-    ----------
-    text
-        The text. A sum becomes a number with three significant figures, or a measurement with its error;
-        ``round(x, 1)`` sets the number of decimals, ``figures(x, 2)`` the number of significant figures. Other
-        functions are abs, sqrt, exp, ln; for a series of a run first, last, lowest, highest, mean and scatter (the
-        latter two over its last four fifths), and ``at(level, along, series)``; and ``word(x, 'warmer', 'colder')``,
-        which is the first word if x is above zero.
-    names
-        The runs by their letters.
-    setting
-        Whether the text is the value of a setting, to be written with all digits as it is typed.
-
-    Raises
-    ------
-    ConfigError
-        If a sum cannot be worked out.
+    A sum becomes a number with three significant figures, or a measurement with its error; ``round(x, 1)`` sets the
+    number of decimals, ``figures(x, 2)`` the number of significant figures. Other functions are abs, sqrt, exp, ln; for
+    a series of a run first, last, lowest, highest, mean and scatter (the latter two over its last four fifths), and
+    ``at(level, along, series)``; and ``word(x, 'warmer', 'colder')``, which is the first word if x is above zero. In
+    the value of a ``setting`` a number has all digits, as it is typed. A sum that cannot be worked out
+    raises ConfigError.
 
     >>> class Box:
     ...     def fact(self, name):

@@ -40,13 +40,7 @@ def left_out(story: str) -> str:
 
 
 class AnyScene(NamedTuple):
-    """The object that the text of `WORDS` calls ``scene``.
-
-    Parameters
-    ----------
-    runs
-        The runs of the sheet; those that have been made give their headline numbers.
-    """
+    """The object that the text of `WORDS` calls ``scene``; those ``runs`` that were made give their headlines."""
 
     runs: Sequence[Trial]
 
@@ -198,17 +192,8 @@ def worksheet(
 class _Filling:
     """Works out the sums in the text of a sheet.
 
-    Parameters
-    ----------
-    path
-        The file of the text, for error messages.
-    runs
-        The runs of the sheet.
-    answers
-        Whether answers are given.
-    differs
-        What is printed in place of an answer in which a sum fails, if the settings are not those for which the text
-        was written.
+    ``path`` is the file of the text, for error messages, and ``answers`` whether answers are given. ``differs`` is
+    printed in place of an answer in which a sum fails, if the settings are not those for which the text was written.
     """
 
     def __init__(self, path: Path, runs: Sequence[Trial], *, answers: bool = False, differs: str = "") -> None:

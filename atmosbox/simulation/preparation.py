@@ -86,14 +86,13 @@ def prepare(
     accuracy: str | None = None,
     save_molecules: bool | None = False,
 ) -> Prepared:
-    """Load a scenario and check its settings; nothing is simulated yet.
+    """Load a scenario and check its settings, or raise an AtmosboxError; nothing is simulated yet.
 
     Parameters
     ----------
-    scene
-        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
-    settings
-        Values by name, numbers in the documented unit or texts with a unit.
+    scene, settings
+        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own; values by name, numbers in the
+        documented unit or texts with a unit.
     engine
         The engine with its options, such as ``stepped:delta=0.02``; None for that of the scene, see `usual_engine`.
     accuracy
@@ -102,16 +101,8 @@ def prepare(
     save_molecules
         Whether position and velocity of all molecules are saved in every frame; None if they take less than 10 MB.
 
-    Returns
-    -------
-    Prepared
-        The argument of `execute`.
-
-    Raises
-    ------
-    AtmosboxError
-        If the scene is unknown or a setting is refused.
-
+    Examples
+    --------
     >>> prepare("lifting-dry", {"temperature": "20 degC"}).settings.temperature
     20.0
     """

@@ -57,12 +57,7 @@ def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> t
 
 
 def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
-    """Return the headlines that a dataset holds.
-
-    Raises
-    ------
-    FileError
-        If the file names headlines that it does not contain.
+    """Return the headlines that a dataset holds; raise FileError if it names some that it does not contain.
 
     >>> from atmosbox import run
     >>> box = run("elastic-collisions", duration="2 s")

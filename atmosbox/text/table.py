@@ -10,19 +10,11 @@ NARROWEST = 20  # columns for a cell that is broken into lines
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narrowest: int = NARROWEST) -> list[str]:
-    r"""Return the lines of a table; no cell is cut off.
+    r"""Return the lines of a table at most `width` characters wide; no cell is cut off.
 
-    Parameters
-    ----------
-    header
-        The name of each column; empty if the columns have no names.
-    rows
-        The cells.
-    width
-        Largest number of characters in a line. To fit, the names of columns are broken into lines, then the last cell
-        of a row and the first; if that is not enough, each row becomes a block of lines.
-    narrowest
-        Least number of characters of a cell that is broken into lines; no word is broken.
+    To fit, the names of columns are broken into lines, then the last cell of a row and the first, to `narrowest`
+    characters at least and never within a word; if that is not enough, each row becomes a block of lines. An empty
+    header means columns without names.
 
     >>> print("\n".join(table(["quantity", "theory"], [["temperature [degC]", "15.0"]], 80)))
     quantity            theory

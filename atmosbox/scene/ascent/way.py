@@ -37,23 +37,11 @@ gone.
 class MoistAscent:
     """The ascent of moist air according to theory.
 
-    Parameters
-    ----------
-    molecules
-        Number of molecules at the start, of air and of vapour together.
-    diameter
-        Diameter of a molecule [m].
-    temperature, pressure, vapour_pressure
-        At the start [K, Pa, Pa].
-    route
-        Pressure of the environment at equal intervals of time, from the start to the end [Pa].
-    length
-        Duration of the ascent, in mean free times at its start.
-    area
-        Area of all droplets, in units of the floor of the box at the start.
-    most_liquid
-        Liquid that the cloud holds before it rains, as mass per mass of dry air; infinite if it does not rain [kg
-        kg-1].
+    At the start there are ``molecules`` of air and vapour together, of a ``diameter`` [m], at ``temperature`` [K],
+    ``pressure`` and ``vapour_pressure`` [Pa]. ``route`` is the pressure of the environment at equal intervals of time,
+    from the start to the end [Pa], ``length`` the duration in mean free times at the start, and ``area`` that of all
+    droplets, in units of the floor of the box at the start. ``most_liquid`` is how much liquid the cloud holds before
+    it rains, as mass per mass of dry air [kg kg-1]; infinite if it does not rain.
     """
 
     molecules: int

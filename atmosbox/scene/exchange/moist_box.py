@@ -20,16 +20,8 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 class MoistBox:
     """A cube of moist air between heat baths, with liquid in it.
 
-    Parameters
-    ----------
-    molecules
-        Number of molecules, of air and of vapour together.
-    temperature, pressure
-        Of the walls [K], and of the gas at the start [Pa].
-    humidity
-        Relative humidity at the start [1].
-    ideal
-        Whether molecules have no volume.
+    There are ``molecules`` of air and vapour together, without volume if ``ideal``; ``temperature`` is that of the
+    walls [K], ``pressure`` and ``humidity`` are those of the gas at the start [Pa, 1].
 
     The excess over saturation condenses; with fewer molecules it fluctuates more:
 

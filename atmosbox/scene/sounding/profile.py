@@ -172,14 +172,7 @@ def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
 
 
 def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, place: Place) -> None:
-    """Refuse levels that do not make an ascent: too few, not in order, a dewpoint above its temperature, a wide gap.
-
-    >>> p = np.array([1000e2, 900e2, 950e2, 700e2, 500e2])
-    >>> check_levels(p, np.full(5, 280.0), np.full(5, 270.0), lambda level: f"a.csv, line {level + 2}")
-    Traceback (most recent call last):
-    atmosbox.errors.SoundingError: a.csv, line 4: the pressure of 950 hPa is not below the 900 hPa of the level
-    before it: put the levels in order, ground first.
-    """
+    """Refuse levels that do not make an ascent: too few, not in order, a dewpoint above its temperature, a wide gap."""
     count, hpa = pressure.size, pressure / 100
     if count < FEWEST_LEVELS:
         where = place(count - 1)
