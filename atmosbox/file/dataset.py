@@ -105,6 +105,8 @@ def dataset(
     EngineError
         If a value of a ledger variable or a count is not finite.
 
+    Examples
+    --------
     >>> run = dataset(
     ...     {"air_temperature": [300.0, 301.0]}, {"elapsed_time": [0.5, 1.0]}, {"title": "A box of air"}
     ... )

@@ -33,12 +33,8 @@ class Knob:
         Its name; if it is the name of a setting, that setting is changed without a new start.
     help
         What it is, in one line.
-    unit
-        The unit of its values, as settings spell it.
-    low, high
-        The lowest and the highest value, in `unit`.
-    value
-        Its value at the start, in `unit`.
+    low, high, value, unit
+        The lowest and the highest value and that at the start, in their unit, as settings spell it.
     turn
         Function that is called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
     leave

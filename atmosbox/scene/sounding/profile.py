@@ -45,17 +45,13 @@ class Sounding:
 
     Parameters
     ----------
-    pressure : (level,)
-        Pressure, decreasing from each level to the next [Pa].
-    temperature : (level,)
-        Temperature [K].
+    pressure, temperature : (level,)
+        Pressure, decreasing from each level to the next [Pa], and temperature [K].
     dewpoint : (level,)
         Dewpoint with respect to liquid water, not above the temperature; if rounding has put it up to 0.05 K above the
         temperature, it is set to the temperature [K].
-    name
-        The name of the ascent.
-    source
-        Where it comes from: the file and its format, or the paper.
+    name, source
+        The name of the ascent, and where it comes from: the file and its format, or the paper.
     remarks
         What reading has left out or filled in, one sentence each.
     places
