@@ -88,9 +88,9 @@ def wall_temperature(
 ) -> Knob:  # fmt: skip
     """Return the knob that sets the temperature of the heat baths of a box.
 
-    It is called ``name``, as the setting that has its first value. ``wall`` is the number of the wall, in the order of
-    `atmosbox.engine.core.walls.WALL_NAMES`, None for all heat baths. The range from ``low`` to ``high``, in the unit of
-    the setting, is widened to include the first value.
+    It has the name of a setting, and starts at the value of that setting. ``wall`` is the number of the wall, in the
+    order of `atmosbox.engine.core.walls.WALL_NAMES`, None for all heat baths. The range from ``low`` to ``high``, in
+    the unit of the setting, is widened to include the first value.
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("temperature", {"temperature": "20 degC"}))
