@@ -28,27 +28,12 @@ class Checkpoint:
     """The file of a run that is not finished: call the checkpoint after every frame, and it writes when it is time to.
 
     It writes the whole dataset so far to `part`, at most once in `every_seconds`, and so seldom that writing is
-    expected to take less than a fiftieth of the run's time. The part of an earlier run that was killed is replaced.
+    expected to take less than a fiftieth of the run's time. The part of an earlier run that was killed is replaced; it
+    is `stale` until then.
 
-    Parameters
-    ----------
-    path
-        The file that the finished run will have.
-    every_seconds
-        The shortest time between two writings [s].
-    force
-        Whether the finished run may replace a file.
-    numbered
-        Whether the run gets another name, NAME-2, if a run of this name is there, finished or not, or is under way.
-    clock
-        Function that returns the time [s].
-
-    Attributes
-    ----------
-    path, part
-        The file of the finished run, and the file of the run so far; `begin` may still change a numbered name.
-    stale
-        Whether an earlier run left a part there, which the first writing will replace.
+    The finished run will be at `path`, where it may replace a file if `force`. If `numbered`, the run gets another
+    name, NAME-2, if a run of this name is there, finished or not, or is under way; `begin` may still change it. `clock`
+    returns the time [s].
     """
 
     def __init__(

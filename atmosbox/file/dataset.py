@@ -87,25 +87,14 @@ def dataset(
 
     Parameters
     ----------
-    frames
-        Arrays by the name of their variable, in SI, with the dimensions that `variable` declares.
-    coords
-        Arrays by the name of their coordinate: ``elapsed_time`` in `time_unit`, the others in SI; and the bounds of
-        their cells as ``elapsed_time_bnds``, ``height_bnds``, ``speed_bnds``, ``energy_bnds``, of shape (n, 2).
-        The labels of the six walls and three axes need not be given.
-    attrs
-        The global attributes.
-    headlines
-        The main results of the run.
-    time_unit
-        The unit of ``elapsed_time``: s, ns or ps.
+    frames, coords
+        Arrays by the name of their variable or coordinate, in SI, with the dimensions that `variable` declares;
+        ``elapsed_time`` is in `time_unit`: s, ns or ps. The bounds of cells are coordinates, too, of shape (n, 2), such
+        as ``height_bnds``. The labels of the six walls and three axes need not be given.
+    attrs, headlines
+        The global attributes, and the main results of the run, whose names ``atmosbox_headlines`` lists.
     own
         The variables that the scene declares, by name.
-
-    Returns
-    -------
-    xarray.Dataset
-        Coordinates, variables and headlines; ``atmosbox_headlines`` lists the names of the headlines.
 
     Raises
     ------

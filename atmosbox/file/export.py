@@ -37,8 +37,6 @@ def extended_xyz(dataset: xr.Dataset) -> bytes:
     ----------
     https://github.com/libAtoms/extxyz
 
-    Examples
-    --------
     >>> from atmosbox import run
     >>> lines = extended_xyz(run("elastic-collisions", duration="2 s", molecules=2)).decode().splitlines()
     >>> lines[0], lines[1].partition(" Properties=")[2].split()[0]
@@ -79,8 +77,6 @@ def tables(dataset: xr.Dataset) -> dict[str, bytes]:
     A column is headed by the name of the variable and its unit; all units but that of time are SI. A variable with a
     value for each wall or axis becomes one column for each. Molecules are left out: a trajectory is not a table.
 
-    Examples
-    --------
     >>> from atmosbox import run
     >>> made = tables(run("elastic-collisions", duration="2 s"))
     >>> made["headlines"].decode().splitlines()[0]

@@ -91,8 +91,6 @@ def molecules(dataset: xr.Dataset, *otherwise: Given | str) -> Molecules:
 
     If there are none, the message ends with `otherwise`: what else a user can do.
 
-    Examples
-    --------
     >>> import xarray as xr
     >>> molecules(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "./mine.py"}'}))
     Traceback (most recent call last):

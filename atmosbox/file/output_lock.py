@@ -24,18 +24,6 @@ class OutputLock:
     """The right to write one file: ``.NAME.lock`` beside it, which names the process and the computer of its owner.
 
     The system holds the lock as long as the process lives, so a process that was killed leaves a file but no lock.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     lock = OutputLock(Path(folder, "run.nc"))
-    ...     try:
-    ...         OutputLock(Path(folder, "run.nc"))
-    ...     except FileError as error:
-    ...         print("is being written by process" in str(error))
-    ...     lock.release()
-    True
     """
 
     def __init__(self, path: Path) -> None:

@@ -32,8 +32,6 @@ def named(
 ) -> tuple[Path, str]:
     """Return the output path and the format, from the suffix or from `format`; refuse a path that cannot be written.
 
-    Examples
-    --------
     >>> str(named("parcel", "svg", ("png", "svg"), force=True)[0])
     'parcel.svg'
     """
@@ -56,12 +54,6 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
 
     Return the file to write: the path, or what it points to if it is a symbolic link. `example` is the file name that a
     message suggests.
-
-    Examples
-    --------
-    >>> check_writable("no/such/folder/run.nc")
-    Traceback (most recent call last):
-    atmosbox.errors.FileError: The folder no/such/folder does not exist: type mkdir -p no/such/folder first.
     """
     if not os.fspath(path).strip():
         raise FileError("The name of the file is empty", "give one, such as ", Option("out", example))
@@ -102,8 +94,6 @@ def run_is_there(path: AnyPath) -> bool:
 def unused(path: AnyPath, taken: Callable[[Path], bool] = os.path.lexists) -> Path:
     """Return a path that is not in use: this one, or else NAME-2, NAME-3 and so on with the same suffix.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     Path(folder, "run.nc").touch()
@@ -126,8 +116,6 @@ def clear(path: Path, *, everything: bool = False) -> None:
 
     Such a file is an hour old. With `everything`, remove all of them, because no other program can be writing the file.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     Path(folder, ".a.txt.1a2b3c4d.tmp").touch()
@@ -147,15 +135,6 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
     is killed leaves the temporary file, which the next program that writes the same file removes: see `clear`.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with whole_file(Path(folder, "a.txt")) as temporary:
-    ...         written = temporary.write_text("air")
-    ...     [file.name for file in Path(folder).iterdir()]
-    ['a.txt']
     """
     clear(path)
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")

@@ -46,23 +46,11 @@ def global_attributes(
 ) -> dict[str, Any]:
     """Return the global attributes of a file: what it contains, how it was made and how to repeat the run.
 
-    Parameters
-    ----------
-    parameters
-        Everything that determines the run, as JSON can hold it: ``scene``, ``settings``, ``engine``, ``version``.
-    title
-        What the file contains, in one line.
-    command
-        The command that made the file, as typed.
-    comment, references
-        The assumptions of the scene, and the literature that it uses.
-    panels
-        The panels of the scene's figure, as JSON.
-    status
-        ``complete``, ``partial`` or ``interrupted``.
+    ``parameters`` is everything that determines the run, as JSON can hold it: ``scene``, ``settings``, ``engine``,
+    ``version``. ``title`` says in one line what the file contains, and ``command`` is what the user typed. ``comment``
+    and ``references`` are the assumptions of the scene and the literature that it uses, ``panels`` those of its figure,
+    as JSON. ``status`` is ``complete``, ``partial`` or ``interrupted``.
 
-    Examples
-    --------
     >>> made = global_attributes({"scene": "temperature"}, title="A box", command="atmosbox run temperature")
     >>> made["Conventions"], made["atmosbox_parameters"]
     ('CF-1.11', '{"scene": "temperature"}')
@@ -91,8 +79,6 @@ def global_attributes(
 def parameters(dataset: xr.Dataset) -> dict[str, Any]:
     """Return everything that determines a run, so that it can be repeated.
 
-    Examples
-    --------
     >>> import xarray
     >>> made = global_attributes({"scene": "temperature"}, title="A box", command="a test")
     >>> parameters(xarray.Dataset(attrs=made))

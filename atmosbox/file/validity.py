@@ -107,8 +107,6 @@ def has_endless_heap(path: str | os.PathLike[str]) -> bool:
     ----------
     .. [1] HDF5 File Format Specification, section III.E, global heap.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "damaged.nc"

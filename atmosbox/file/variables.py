@@ -36,12 +36,10 @@ class Variable:
 
     Parameters
     ----------
-    name, dims
-        Its name in the file and the names of its dimensions, none for a single number.
+    name, dims, long_name
+        Its name in the file, the names of its dimensions, and what it is in words.
     units
         Its SI unit as UDUNITS writes it; empty for labels and flags, which have none.
-    long_name
-        What the variable is, in words.
     standard_name
         Its name in the CF standard name table, if the table has one and no other variable here uses it.
     cell_methods
@@ -57,13 +55,9 @@ class Variable:
     coordinate
         Whether the variable is an auxiliary coordinate, such as the pressure of the parcel: other variables can be
         drawn against it.
-    comment
-        What else a reader must know.
-    flags
-        The meanings of the values 0, 1, 2, ... of a flag.
+    comment, flags
+        What else a reader must know; the meanings of the values 0, 1, 2, ... of a flag.
 
-    Examples
-    --------
     The file says that a pressure is the mean over its frame:
 
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure", cell_methods="elapsed_time: mean")
@@ -138,8 +132,6 @@ SUFFIXES = ("_se", "_count", "_theory", "_tolerance")
 def derived(parent: Variable, suffix: str) -> Variable:
     """Return the declaration of a variable's standard error, number of samples, answer of theory or tolerance.
 
-    Examples
-    --------
     >>> pressure = Variable("air_pressure", ("elapsed_time",), "Pa", "pressure of the air on the walls")
     >>> derived(pressure, "_theory").long_name
     'answer of theory for the pressure of the air on the walls'
@@ -353,8 +345,6 @@ VARIABLES: dict[str, Variable] = {
 def variable(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> Variable:
     """Return the declaration of a variable, or of its standard error, number of samples, theory or tolerance.
 
-    Examples
-    --------
     The error of a temperature is a difference of temperatures, so 1 K is not -272.15 degC:
 
     >>> error = variable("air_temperature_se")

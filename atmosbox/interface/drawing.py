@@ -49,7 +49,7 @@ def plot(
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
 ) -> Figure:
-    """Draw the figure of a run, of a sweep or of a measured tradeoff.
+    """Draw the figure of a run, of a sweep or of a measured tradeoff, and return it: a notebook shows it.
 
     Parameters
     ----------
@@ -64,11 +64,6 @@ def plot(
         A file to write as well: PNG, SVG or PDF, as its suffix says.
     force
         Whether a file of that name may be replaced.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure; a notebook shows it.
 
     Raises
     ------
@@ -130,6 +125,8 @@ def compare(
 ) -> Comparison:
     """Compare runs: draw them in one figure, and tabulate by how much their results differ.
 
+    The table also lists what differs between the runs, such as settings.
+
     Parameters
     ----------
     *runs
@@ -140,11 +137,6 @@ def compare(
         A file for the figure: PNG, SVG or PDF, as its suffix says.
     force
         Whether a file of that name may be replaced.
-
-    Returns
-    -------
-    Comparison
-        Its ``figure`` and its ``table``; the table also lists what differs between the runs, such as settings.
 
     Raises
     ------
@@ -236,7 +228,8 @@ def show(
 ) -> InlinePage:
     """Show the molecules of a run in three dimensions, with its graphs on the same clock.
 
-    In a notebook the page is shown below the cell; elsewhere it opens in the browser.
+    In a notebook the page is shown below the cell; elsewhere it opens in the browser. The ``save`` of the page
+    writes it to a file to hand out.
 
     Parameters
     ----------
@@ -250,11 +243,6 @@ def show(
     language
         Language of the page; ``"auto"`` takes the first language of the reader's browser that the page has.
 
-    Returns
-    -------
-    InlinePage
-        The page; its ``save`` writes it to a file to hand out.
-
     Raises
     ------
     FileError
@@ -262,8 +250,6 @@ def show(
     SettingError
         If there is no run or more than two, or the theme or the language is unknown.
 
-    Examples
-    --------
     >>> import atmosbox as ab
     >>> ab.show(ab.run("temperature", molecules=50, duration="5 ns", save_molecules=False))
     Traceback (most recent call last):

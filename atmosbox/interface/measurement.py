@@ -84,13 +84,6 @@ def run(
     >>> dataset = ab.run("lifting-dry", molecules=200, seed=1)
     >>> bool(dataset.air_temperature[-1] < dataset.air_temperature[0])
     True
-
-    An error message names the argument to give:
-
-    >>> ab.run("lifting-dry", molecules=0.5)
-    Traceback (most recent call last):
-    atmosbox.errors.UnitError: molecules = 0.5 is not whole, but a whole number from 50 to 1000000 is wanted:
-    give molecules=4000.
     """
     from atmosbox.errors import Command, UnknownSceneError
     from atmosbox.file.checkpoint import Checkpoint
@@ -136,11 +129,6 @@ def resume(
     progress
         As in `run`.
 
-    Returns
-    -------
-    xarray.Dataset
-        All measurements since the start of the run.
-
     Raises
     ------
     FileError
@@ -170,17 +158,12 @@ def resume(
 
 
 def open(path: str | os.PathLike[str]) -> RunDataset:
-    """Return a run that was saved.
+    """Return a run that was saved, as a dataset in memory; the file is closed again.
 
     Parameters
     ----------
     path
         A file that `atmosbox.run` or ``atmosbox run`` has written.
-
-    Returns
-    -------
-    xarray.Dataset
-        The run, in memory; the file is closed again.
 
     Raises
     ------
@@ -320,11 +303,6 @@ def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:
     ----------
     scene
         Name of the scene whose settings to return, or the path of your own; by default the scenes are returned.
-
-    Returns
-    -------
-    tuple of str
-        The names, which print as a table.
 
     Raises
     ------

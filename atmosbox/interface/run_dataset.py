@@ -13,12 +13,8 @@ _WIDTH = 110
 
 
 class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
-    """The dataset of a run, which prints its headline table before its variables.
+    """An `xarray.Dataset` of a run, which prints its headline table before its variables.
 
-    In everything else it is an `xarray.Dataset`.
-
-    Examples
-    --------
     >>> import atmosbox
     >>> run = atmosbox.run("elastic-collisions", duration="2 s")
     >>> print(repr(run).splitlines()[2].split()[0], isinstance(run, xr.Dataset))
@@ -75,13 +71,7 @@ Show = Callable[[float, str], None]
 
 
 def in_notebook() -> bool:
-    """Return whether this program runs in a notebook, whose cells show HTML.
-
-    Examples
-    --------
-    >>> in_notebook()
-    False
-    """
+    """Return whether this program runs in a notebook, whose cells show HTML."""
     ipython = sys.modules.get("IPython")  # a notebook has imported IPython
     shell = ipython.get_ipython() if ipython is not None else None
     return getattr(shell, "kernel", None) is not None
@@ -90,8 +80,6 @@ def in_notebook() -> bool:
 def preformatted(text: str) -> str:
     """Return text as HTML that keeps its columns.
 
-    Examples
-    --------
     >>> preformatted("p < 1 bar").partition(">")[2]
     'p &lt; 1 bar</pre>'
     """

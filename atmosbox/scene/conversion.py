@@ -76,8 +76,6 @@ SIGNS = str.maketrans({"−": "-", "º": "°", "˚": "°"})
 def slashed(unit: str) -> str:
     """Return a unit in the form in which it is typed, without a blank.
 
-    Examples
-    --------
     >>> slashed("m s-2"), slashed("K km-1"), slashed("degC")
     ('m/s2', 'K/km', 'degC')
     """
@@ -92,8 +90,6 @@ _PRINTED = {"degC": "°C", "um": "µm", "us": "µs", "percent": "%"}
 def power_of_ten(power: int) -> str:
     """Return a power of ten as it is printed, its exponent as a superscript.
 
-    Examples
-    --------
     >>> power_of_ten(25)
     '10²⁵'
     """
@@ -103,8 +99,6 @@ def power_of_ten(power: int) -> str:
 def spelled(unit: str, power: int = 0) -> str:
     """Return a unit as it is printed, empty for a pure number; with a power of ten before it unless that is 0.
 
-    Examples
-    --------
     >>> spelled("m s-1"), spelled("J kg-1 K-1"), spelled("ns-1"), spelled("degC"), spelled("1"), spelled("1", power=-15)
     ('m/s', 'J/(kg K)', 'ns⁻¹', '°C', '', '10⁻¹⁵')
     """
@@ -153,8 +147,6 @@ def _looked_up(name: str) -> Unit | None:
 def known_unit(text: str) -> Unit | None:
     """Return the unit of any spelling, from the table or else from pint; None if there is none.
 
-    Examples
-    --------
     >>> known_unit("m/s^2") == known_unit("m s-2"), known_unit("blorp")
     (True, None)
     """
@@ -168,8 +160,6 @@ def known_unit(text: str) -> Unit | None:
 def declared_unit(unit: str) -> Unit:
     """Return the unit that a scene declares; raise UnitError if there is no such unit.
 
-    Examples
-    --------
     >>> declared_unit("hPa").si
     'Pa'
     """
@@ -180,19 +170,10 @@ def declared_unit(unit: str) -> Unit:
 
 
 def to_si(value: float, unit: str, *, difference: bool = False) -> float:
-    """Return a value in SI units.
+    """Return a value in SI units; ``unit`` is "hPa", "degC", "K/km", "%", "1" for a pure number, or any other.
 
-    Parameters
-    ----------
-    value
-        A number in `unit`.
-    unit
-        The unit, such as "hPa", "degC", "K/km", "%", or "1" for a pure number.
-    difference
-        Whether the value is a difference or an error bar: one of 2 degC is one of 2 K, not of 275.15 K.
+    A ``difference``, which may be an error bar, is converted without an offset: one of 2 degC is one of 2 K.
 
-    Examples
-    --------
     >>> to_si(25.0, "degC"), to_si(1013.25, "hPa"), to_si(0.5, "degC", difference=True)
     (298.15, 101325.0, 0.5)
     """
@@ -203,17 +184,6 @@ def to_si(value: float, unit: str, *, difference: bool = False) -> float:
 def from_si(value: float, unit: str, *, difference: bool = False) -> float:
     """Return a value in SI units in another unit; the inverse of :func:`to_si`.
 
-    Parameters
-    ----------
-    value
-        A number in Pa, K, K m-1, 1, ...
-    unit
-        The unit wanted.
-    difference
-        Whether the value is a difference or an error bar, to which no offset is added.
-
-    Examples
-    --------
     >>> from_si(298.15, "degC"), from_si(0.0098, "K/km")
     (25.0, 9.8)
     """
@@ -224,8 +194,6 @@ def from_si(value: float, unit: str, *, difference: bool = False) -> float:
 def phrase(value: float, unit: str) -> str:
     """Return a number and its unit for a sentence; the unit "1" is left out.
 
-    Examples
-    --------
     >>> phrase(25.0, "degC"), phrase(4000, "1")
     ('25 degC', '4000')
     """
@@ -236,8 +204,6 @@ def phrase(value: float, unit: str) -> str:
 def typed(value: float, unit: str) -> str:
     """Return a number and its unit in the form in which they are typed after ``--set``, without a blank.
 
-    Examples
-    --------
     >>> typed(25.0, "degC"), typed(9.8, "m s-2"), typed(3.0, "m s-1")
     ('25degC', '9.8m/s2', '3m/s')
     """
@@ -249,8 +215,6 @@ def number_and_unit(value: object) -> tuple[Decimal, str]:
 
     A ValueError says what is wrong with the value, in words that follow it.
 
-    Examples
-    --------
     >>> number_and_unit("25 degC"), number_and_unit(4000)
     ((Decimal('25'), 'degC'), (Decimal('4000'), ''))
     """
@@ -281,8 +245,6 @@ def converted(number: float, unit: str, wanted: str) -> float:
 
     Temperatures are absolute; a degree in a product, as in "6.5 degC/km", is a difference of temperature.
 
-    Examples
-    --------
     >>> converted(77.0, "degF", "degC"), converted(9.8, "N/kg", "m s-2")
     (25.0, 9.8)
     """

@@ -17,8 +17,6 @@ class DescribedParcel(Parcel):
 
     It refuses whatever `Parcel` itself refuses, but does not notice molecules that overlap.
 
-    Examples
-    --------
     >>> box = DescribedParcel([[1, 2, 2]], [[1, 0, 0]], length=(4, 4, 4))
     >>> box.volume, box.energy()
     (64.0, (0.5, 0.0, 0.0))

@@ -34,14 +34,12 @@ class Engine:
 
     Parameters
     ----------
-    name
-        Its name.
-    summary
-        What it does, in one line.
+    name, summary
+        Its name, and what it does, in one line.
     parcel
         The class of its parcels, whose file is imported when the first box is made.
-    parameters
-        Its options.
+    parameters, presets
+        Its options, and names that stand for several options at once.
     ideal
         Whether the pressure is n kT, without Z: its molecules have no excluded volume.
     reference
@@ -49,8 +47,6 @@ class Engine:
     moist, drops, attracting
         The same of parcels with a liquid in them, with drops that have a size of their own, and of molecules that
         attract each other; empty if there are none.
-    presets
-        Names that stand for several options at once.
     """
 
     name: str
@@ -146,10 +142,8 @@ class EngineChoice:
 
     Parameters
     ----------
-    engine
-        The engine.
-    options
-        The options that were given, by name; the engine has its own defaults for the rest.
+    engine, options
+        The engine, and the options that were given, by name; it has its own defaults for the rest.
     described
         Whether its boxes are only described: checked, but never advanced, so that nothing is compiled.
 

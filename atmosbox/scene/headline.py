@@ -43,22 +43,16 @@ class Headline:
 
     Parameters
     ----------
-    name
-        Its name in the output.
+    name, label
+        Its names in the output and in a table.
     value, standard_error
         The measurement and its statistical error [unit].
     theory
         The answer of theory [unit]; None if there is none.
-    tolerance
-        Known error of the model, in addition to the statistical error [unit].
-    reason
-        Why the tolerance has this size.
-    unit
-        The SI unit of the numbers here.
-    display_unit
-        The unit in which a table shows them.
-    label
-        Its name in a table.
+    tolerance, reason
+        Known error of the model, in addition to the statistical error [unit]; why it has this size.
+    unit, display_unit
+        The SI unit of the numbers here, and the unit in which a table shows them.
     bias, bias_se
         The measured error of runs with this approximate engine, and its standard error [unit].
     low, high

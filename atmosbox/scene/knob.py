@@ -33,12 +33,8 @@ class Knob:
         Its name; if it is the name of a setting, that setting is changed without a new start.
     help
         What it is, in one line.
-    unit
-        The unit of its values, as settings spell it.
-    low, high
-        The lowest and the highest value, in `unit`.
-    value
-        Its value at the start, in `unit`.
+    low, high, value, unit
+        The lowest and the highest value and that at the start, in their unit, as settings spell it.
     turn
         Function that is called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
     leave
@@ -53,8 +49,6 @@ class Knob:
     ValueError
         If the value does not lie between the lowest and the highest.
 
-    Examples
-    --------
     >>> seen = []
     >>> Knob("temperature", "of the walls", "degC", 0.0, 100.0, 25.0, seen.append).set(50.0)
     >>> seen
@@ -94,17 +88,10 @@ def wall_temperature(
 ) -> Knob:  # fmt: skip
     """Return the knob that sets the temperature of the heat baths of a box.
 
-    Parameters
-    ----------
-    name
-        The setting whose value is the value at the start.
-    wall
-        The number of the wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if None.
-    low, high
-        The range, in the unit of the setting; widened to include the value at the start.
+    It has the name of a setting, and starts at the value of that setting. ``wall`` is the number of the wall, in the
+    order of `atmosbox.engine.core.walls.WALL_NAMES`, None for all heat baths. The range from ``low`` to ``high``, in
+    the unit of the setting, is widened to include the first value.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("temperature", {"temperature": "20 degC"}))
     >>> [(knob.name, knob.value, knob.unit) for knob in setup.knobs]
@@ -121,8 +108,6 @@ def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float
 
     ``low`` and ``high`` are the range in the unit of the setting, above 0; it is widened to include the first value.
 
-    Examples
-    --------
     The work of a change is in the energy budget:
 
     >>> from atmosbox.simulation.preparation import build, prepare
@@ -145,20 +130,10 @@ def warmed_walls(
     """Return the knob that turns smooth walls into heat baths at its first turn, and sets their temperature.
 
     Until then the walls are those of the scene, so that a run in which no knob is turned is that of ``atmosbox run``.
+    ``name``, ``low`` and ``high`` are as in `wall_temperature`, ``walls`` are the numbers of the walls, and ``help``
+    says in one line what the knob is. ``kT`` gives the temperature of the walls [reduced energy] for a value in SI
+    units.
 
-    Parameters
-    ----------
-    name, help
-        The setting whose value is the value at the start, and what the knob is, in one line.
-    walls
-        Numbers of the walls, in the order of `atmosbox.engine.core.walls.WALL_NAMES`.
-    kT
-        The temperature of the walls [reduced energy] for a value of the knob in SI units.
-    low, high
-        The range, in the unit of the setting; widened to include the value at the start.
-
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("evaporation", {"molecules": 200, "pool": 40}))
     >>> bool(np.isnan(setup.parcel.wall_kT()).all())
@@ -183,8 +158,6 @@ def warmed_walls(
 def open_pool(parcel: Any) -> Knob:
     """Return the knob that covers a part of a pool, or all of it, with a foil; see `set_open_pool` of the box.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("evaporation", {"molecules": 300, "pool": 50}))
     >>> setup.knobs[1].set(0.0)
@@ -201,8 +174,6 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 
     ``height`` gives the height [m] after a share of the ascent, 0 to 1; it increases.
 
-    Examples
-    --------
     If the knob is not turned, the parcel rises to the top:
 
     >>> from atmosbox.simulation.preparation import build, prepare
@@ -225,8 +196,6 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 def way(parcel: Parcel, driver: FollowPressure) -> Knob:
     """Return the knob that moves a parcel back and forth along a path that goes up and down.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> [knob.name for knob in build(prepare("mountains", {"molecules": 200})).knobs]
     ['way']

@@ -26,8 +26,6 @@ def water(scale: Scale) -> Substance:
     Its binding energy and its heat capacity are those of `atmosbox.theory.saturation_vapor_pressure`; so its saturation
     vapour pressure follows that formula at every temperature.
 
-    Examples
-    --------
     >>> from atmosbox.theory.constants import BOLTZMANN
     >>> scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 293.15)
     >>> round(water(scale).saturation_pressure(273.15 / 293.15) * scale.pressure / 100.0, 3)
@@ -48,8 +46,6 @@ def water(scale: Scale) -> Substance:
 def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) -> int:
     """Return how many of ``molecules`` are vapour at a partial pressure.
 
-    Examples
-    --------
     >>> vapour_molecules(1000, 23.0, 1000.0)
     23
     """
@@ -62,8 +58,6 @@ def nuclei_heat_capacity(air: int) -> float:
     It keeps the temperature steady when the first molecules condense. It is at most half a percent of the heat capacity
     of the air at constant pressure, 7/2 k per molecule, and so changes an adiabat little.
 
-    Examples
-    --------
     >>> nuclei_heat_capacity(1000), nuclei_heat_capacity(10_000)
     (17.5, 100.0)
     """
@@ -80,8 +74,6 @@ class MoistAir(NamedTuple):
 def moist_air(molecules: int, vapour: int) -> MoistAir:
     """Return molecules of moist air.
 
-    Examples
-    --------
     >>> from atmosbox.engine import RandomNumbers, Start
     >>> air = moist_air(100, 2)
     >>> drawn = Start(100, WARM).draw(RandomNumbers(1), **air._asdict())

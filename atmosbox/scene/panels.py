@@ -112,8 +112,8 @@ class Panel:
         as is the custom, although the numbers CAPE and CIN are those of virtual temperatures. ``atmosphere``: the
         parcel on its ascent, over the ground or over mountains, with its cloud and its rain; its one line is the height
         of the parcel over time.
-    title : str
-        What the graph shows, in a few words.
+    title, note : str
+        What the graph shows, in a few words; a sentence under the title.
     lines : tuple of Line
         The curves, in the order of the legend.
     x_label, y_label : str
@@ -127,8 +127,6 @@ class Panel:
     averages : int
         Number of equal parts of the x axis in which measured curves of a ``line`` panel are averaged, so that noise
         does not fill the far end of a logarithmic axis; 0 draws every value.
-    note : str
-        A sentence under the title.
     headlines : tuple of str
         Names of the headline numbers of the run whose misfit is written into this panel.
     marks : tuple of str
@@ -258,14 +256,12 @@ def over_time(
     ----------
     title
         Title of the panel, a sentence.
-    curves
-        Names of the measured variables, with the label of each.
+    curves, more
+        Names of the measured variables, with the label of each; further lines.
     label, unit
         Label and unit of the vertical axis.
     theory
         Label of the theory of the first curve; empty for none.
-    more
-        Further lines.
     log
         Whether the axis of time is logarithmic, because most of the change happens at the start.
     parts
@@ -300,10 +296,8 @@ def over_height(
 
     Parameters
     ----------
-    title
-        Title of the panel, a sentence.
-    lines
-        The curves.
+    title, lines
+        Title of the panel, a sentence; its curves.
     label, unit
         Label and unit of the horizontal axis.
     *headlines

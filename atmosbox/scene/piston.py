@@ -29,8 +29,6 @@ def size_of_parcel(
 ) -> tuple[float, NDArray[np.float64], float]:
     """Return density, sides within reach of the centres, and (Z - 1) / n, in diameters, at a pressure [Pa] and kT = 1.
 
-    Examples
-    --------
     Points at 1000 hPa and 0 degC have Loschmidt's number, 2.65e25 in a cubic metre; spheres push each other apart:
 
     >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR

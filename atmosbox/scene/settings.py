@@ -41,8 +41,8 @@ class Parameter:
 
     Parameters
     ----------
-    name
-        Its name.
+    name, help
+        Its name, and what it is, in one line.
     unit
         The unit of a bare number, "1" for a pure number, empty for switches and words.
     default
@@ -51,8 +51,6 @@ class Parameter:
         The lowest and highest value allowed, in `unit`; None where there is no limit.
     choices
         The words allowed; None for numbers, switches and free text.
-    help
-        What the setting is, in one line.
     kind
         The type of its value: "int", "float", "bool" or "str".
     given_as
@@ -249,6 +247,8 @@ def setting(
 ) -> Any:  # fmt: skip
     """Declare a setting of a scene.
 
+    It returns a `Parameter`, typed as Any, so that ``temperature: float = setting(...)`` is right for a type checker.
+
     Parameters
     ----------
     default
@@ -258,15 +258,8 @@ def setting(
         switch or a word.
     help
         What it is, in one line.
-    low, high
-        The lowest and highest value allowed, in `unit`.
-    choices
-        The words allowed.
-
-    Returns
-    -------
-    Parameter
-        The declaration; typed as Any, so that ``temperature: float = setting(...)`` is right for a type checker.
+    low, high, choices
+        The lowest and highest value allowed, in `unit`; the words allowed.
 
     Examples
     --------
@@ -369,10 +362,8 @@ class SceneSettings:
 
         Parameters
         ----------
-        name
-            The name of the setting.
-        problem
-            What is wrong with it; the sentence puts it after the value.
+        name, problem
+            The name of the setting, and what is wrong with it; the sentence puts it after the value.
         *remedy
             What else the user can do, as for :class:`~atmosbox.errors.SettingError`.
         at_most, at_least

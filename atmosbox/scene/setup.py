@@ -25,18 +25,12 @@ class Setup:
 
     Parameters
     ----------
-    parcel
-        The molecules in their box, in the engine's reduced units.
-    scale
-        The SI values of these units.
-    duration
-        How long the run lasts [reduced time].
-    frames
-        Number of frames, each one point of the time series.
-    instruments
-        What is measured.
-    samples
-        Number of samples of the molecules in a frame.
+    parcel, scale
+        The molecules in their box, in the engine's reduced units, and the SI values of these units.
+    duration, frames
+        How long the run lasts [reduced time], and the number of its frames, each one point of the time series.
+    instruments, samples
+        What is measured, and the number of samples of the molecules in a frame.
     settle
         Number of frames before averages begin.
     time_unit
@@ -103,10 +97,9 @@ class Series:
     ----------
     engine
         The engine of all runs, with its options.
-    vary
-        What differs: an option of the engine, or a setting of the scene.
-    values
-        Its values, from the cheapest run to the most expensive.
+    vary, values
+        What differs: an option of the engine, or a setting of the scene; its values, from the cheapest run to the most
+        expensive.
     settings
         The settings of all runs that differ from the scene's defaults.
     order

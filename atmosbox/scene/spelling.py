@@ -11,8 +11,6 @@ from atmosbox.errors import Setting, SettingError, shown
 def field_name(name: str) -> str:
     """Return the Python name of a setting, which a user may spell with "-" for "_".
 
-    Examples
-    --------
     >>> field_name(" pressure-top")
     'pressure_top'
     """
@@ -22,8 +20,6 @@ def field_name(name: str) -> str:
 def plain(name: str) -> str:
     """Return a name in the form for comparison: without capitals, and with "_" for "-".
 
-    Examples
-    --------
     >>> plain(" Pressure-Top")
     'pressure_top'
     """
@@ -33,8 +29,6 @@ def plain(name: str) -> str:
 def nearest(name: str, names: Iterable[str]) -> str | None:
     """Return the name that a user probably meant, or None.
 
-    Examples
-    --------
     >>> names = ["molecules", "temperature"]
     >>> nearest("temprature", names), nearest("mol", names), nearest("x", names)
     ('temperature', 'molecules', None)
@@ -51,8 +45,6 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 def assignments(items: Iterable[str]) -> dict[str, str]:
     """Return the values of ``name=value``, as they are typed after each ``--set``, by name; refuse other texts.
 
-    Examples
-    --------
     >>> assignments(["temperature=25 degC", "pressure-top=300hPa"])
     {'temperature': '25 degC', 'pressure_top': '300hPa'}
     """

@@ -15,19 +15,10 @@ from atmosbox.scene.spelling import nearest, plain
 class Target(NamedTuple):
     """How large the expected error of a single run may be.
 
-    Parameters
-    ----------
-    text
-        As a user types it.
-    kelvin
-        The largest error of a temperature [K]; ``inf`` where there is no limit.
-    share
-        The largest error of everything else, as a share of the theory; ``inf`` where there is no limit.
-    absolute
-        Whether `share` also limits the error of temperatures, as a share of the absolute temperature.
-    best
-        Whether to choose the most accurate run, with errors in units of the two limits, and not the cheapest run within
-        the limits.
+    ``text`` is what a user types; ``kelvin`` the largest error of a temperature [K] and ``share`` that of everything
+    else, as a share of the theory, each ``inf`` where there is no limit. If ``absolute``, ``share`` also limits the
+    error of temperatures, as a share of the absolute temperature. If ``best``, the most accurate run is chosen, with
+    errors in units of the two limits, and not the cheapest run within the limits.
     """
 
     text: str
@@ -56,20 +47,10 @@ FIX = (Option("accuracy", "lecture"), ", or an error such as 0.5K or 2%")
 
 
 def parse(text: object) -> Target:
-    """Return the target that a text stands for.
+    """Return the target that a text stands for; refuse any other text with a SettingError.
 
-    Parameters
-    ----------
-    text
-        The name of a target, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
+    It is the name of a target, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
 
-    Raises
-    ------
-    SettingError
-        If it is neither.
-
-    Examples
-    --------
     >>> parse("lecture").limits, parse("0.5 K").kelvin, parse("2%").share
     ('1 % and 0.5 K', 0.5, 0.02)
     """

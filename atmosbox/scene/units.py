@@ -26,7 +26,7 @@ __all__ = ["Scale", "rounded"]
 
 @dataclass(frozen=True)
 class Scale:
-    r"""The value in SI units of each unit of the engine.
+    """The value in SI units of each unit of the engine.
 
     Three units are free, the others follow: time = length sqrt(mass / energy), temperature = energy / k_B. A simulated
     molecule moves as a single real molecule does, but stands for `weight` of them in all quantities that count
@@ -34,10 +34,8 @@ class Scale:
 
     Parameters
     ----------
-    length
-        Usually a diameter of a molecule [m].
-    mass
-        Usually the mass of a molecule [kg].
+    length, mass
+        Usually the diameter [m] and the mass of a molecule [kg].
     energy
         Usually k_B times a temperature of the scene, for one molecule [J].
     weight

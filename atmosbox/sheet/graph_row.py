@@ -20,8 +20,6 @@ _FRAMES = 20
 def until(prepared: Prepared, said: Callable[[str], str] = str) -> str:
     """Return the sentence that tells how long to let a run play; ``said`` translates it.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> until(prepare("temperature", {"molecules": 20}))
     'Let each play to 20 ns, and pause.'

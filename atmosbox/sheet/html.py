@@ -29,8 +29,6 @@ _FIELD = re.compile(r"(\w+): _{5,}")
 def html(sheet: Worksheet) -> str:
     """Return a sheet as one HTML file: headings, a table with headers, fields with names, axes with a description.
 
-    Examples
-    --------
     >>> from atmosbox.sheet import worksheet
     >>> html(worksheet("lifting-dry")).count("<h1>")
     1

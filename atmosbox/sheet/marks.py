@@ -24,8 +24,6 @@ _HTML = {"<sub>", "</sub>", "<sup>", "</sup>"}
 def check(text: str) -> None:
     """Refuse a text with marks that are not printed: pictures, lists, headings, and all HTML except sub and sup.
 
-    Examples
-    --------
     >>> check("p<sup>2/7</sup> is *not* a < b")
     >>> check("<script>alert(1)</script>")
     Traceback (most recent call last):
@@ -45,8 +43,6 @@ def check(text: str) -> None:
 def blocks(text: str) -> Sequence[SyntaxTreeNode]:
     """Return the blocks of a Markdown text: headings, paragraphs, lists, tables, lines to write on.
 
-    Examples
-    --------
     >>> [block.type for block in blocks("# Goal" + chr(10) + "Air rises.")]
     ['heading', 'paragraph']
     """
@@ -72,8 +68,6 @@ def axes(block: SyntaxTreeNode) -> tuple[str, str]:
 def as_paragraph(line: SyntaxTreeNode, size: float) -> str:
     """Return a line of Markdown as the text of a paragraph of reportlab.
 
-    Examples
-    --------
     >>> as_paragraph(blocks("p<sup>2/7</sup> and `plot`")[0].children[0], 10.0)
     'p<sup rise="3.8" size="7.2">2/7</sup> and <font face="DejaVuSansMono">plot</font>'
     """

@@ -56,8 +56,6 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     The fonts are embedded, so that every character is shown on every computer and can be searched for. The file
     contains neither a date nor a random number.
 
-    Examples
-    --------
     >>> from atmosbox.sheet import worksheet
     >>> pdf(worksheet("lifting-dry")).pages
     2
@@ -113,14 +111,8 @@ def _padding(**sizes: float) -> list[tuple[Any, ...]]:
 class _Layout:
     """Converts the Markdown of a sheet to the elements that reportlab lays out (flowables).
 
-    Parameters
-    ----------
-    width
-        Width of the text [points].
-    room
-        Height of lines to write on, empty axes and rows of the table, in units of their usual height.
-    said
-        Translates an English text of the layout.
+    ``width`` is that of the text [points]; ``room`` the height of lines to write on, empty axes and rows of the table,
+    in units of their usual height; ``said`` translates an English text of the layout.
     """
 
     def __init__(self, width: float, room: float, said: Callable[[str], str]) -> None:

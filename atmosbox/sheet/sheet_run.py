@@ -17,18 +17,9 @@ _LETTERS = "ABCD"
 
 @dataclass(frozen=True)
 class Trial:
-    """A run of a sheet, made or not yet made.
+    """A run of a sheet: its letter, what differs in it, the scene with its settings, and its results.
 
-    Parameters
-    ----------
-    letter
-        Its letter in the sheet.
-    title
-        A short text on what differs in it.
-    prepared
-        The scene with its settings.
-    outcome
-        Its results; None before the run was made.
+    The ``outcome`` is None before the run was made.
     """
 
     letter: str
@@ -46,8 +37,6 @@ class Trial:
     def command(self) -> str:
         """The command that makes it.
 
-        Examples
-        --------
         >>> Trial("A", "", runner.prepare("lifting-dry", {"ascent": 50})).command
         'atmosbox run lifting-dry --seed 1 --set ascent=50 --out lifting-dry-A.nc'
         """
@@ -75,8 +64,6 @@ class Trial:
     def fact(self, name: str) -> Any:
         """Return a headline number, a setting, or a variable of the run by its name, searched in this order.
 
-        Examples
-        --------
         >>> Trial("A", "", runner.prepare("lifting-dry", {})).fact("top_pressure")
         300.0
         """
@@ -106,8 +93,6 @@ def trials(first: runner.Prepared, changes: Sequence[dict[str, Any]]) -> tuple[T
 
     A change has a ``title`` and the settings to ``set``, which make its run differ in one respect from the first.
 
-    Examples
-    --------
     >>> fast = {"title": "ten times as fast", "set": {"ascent": 160}}
     >>> found = trials(runner.prepare("lifting-dry", {}), [fast])
     >>> [(each.letter, each.fact("ascent")) for each in found]
@@ -127,8 +112,6 @@ def trials(first: runner.Prepared, changes: Sequence[dict[str, Any]]) -> tuple[T
 def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | None = None) -> tuple[Trial, ...]:
     """Make the runs of a sheet, and return them with their results.
 
-    Examples
-    --------
     >>> (made,) = execute(trials(runner.prepare("elastic-collisions", {"duration": "2 s"}), []))
     >>> made.fact("largest_energy_change").theory
     0.0

@@ -31,8 +31,6 @@ def _easy(size: float) -> bool:
 def bare(value: float, figures: int = 3) -> str:
     """Return a number as text with some significant figures.
 
-    Examples
-    --------
     >>> bare(17.2071), bare(-0.000123), bare(2.4e-19), bare(1013.25)
     ('17.2', '−0.000123', '2.40·10⁻¹⁹', '1013')
     """
@@ -47,8 +45,6 @@ def bare(value: float, figures: int = 3) -> str:
 def fixed(value: float, decimals: int) -> str:
     """Return a number as text with some decimals, and never "-0".
 
-    Examples
-    --------
     >>> fixed(-17.25, 1), fixed(-0.04, 1)
     ('−17.2', '0.0')
     """
@@ -58,8 +54,6 @@ def fixed(value: float, decimals: int) -> str:
 def measured(value: float, error: float) -> str:
     """Return a measurement with its standard error; the error has two significant figures.
 
-    Examples
-    --------
     >>> measured(25.784, 0.983), measured(6.691e9, 6.0e7), measured(-18.25, 0.31), measured(3.0, 0.0)
     ('25.78 ± 0.98', '(6.691 ± 0.060)·10⁹', '−18.25 ± 0.31', '3.00')
     """
@@ -75,8 +69,6 @@ def measured(value: float, error: float) -> str:
 def theoretical(value: float, error: float) -> str:
     """Return a number of theory with as many digits as a measurement with this standard error.
 
-    Examples
-    --------
     >>> theoretical(25.0, 0.983), theoretical(6.671e9, 6.0e7)
     ('25.00', '6.671·10⁹')
     """
@@ -103,17 +95,8 @@ class SetNumber(float):
 
 
 class Measured(Variable):  # type: ignore[misc]
-    """A number with its standard error, which is propagated through a sum, and with its value in theory.
+    """A number with its standard error, which is propagated through a sum, and its value in theory, None without one.
 
-    Parameters
-    ----------
-    value, error
-        The number and its standard error.
-    theory
-        Its value in theory; None if there is no theory of it.
-
-    Examples
-    --------
     >>> warm, cold = Measured(25.0, 3.0), Measured(20.0, 4.0)
     >>> print(warm - cold, 2.0 * warm, warm - warm)
     5+/-5 50+/-6 0.0+/-0
@@ -234,8 +217,6 @@ def _typed(result: Any) -> str:
 def check(text: str) -> list[str | ast.expr]:
     """Return the pieces of a text, words and sums in turn; no sum is worked out.
 
-    Examples
-    --------
     >>> check("{% for i in (1, 2) %}again{% endfor %}")
     Traceback (most recent call last):
     atmosbox.errors.ConfigError: its sums cannot be understood (a brace that is not closed, a statement, or more than \
@@ -251,28 +232,15 @@ def check(text: str) -> list[str | ast.expr]:
 
 
 def filled(text: str, names: Mapping[str, Facts], *, setting: bool = False) -> str:
-    """Return a text with its sums worked out.
+    """Return a text with its sums worked out; ``names`` are the runs by their letters.
 
-    Parameters
-    ----------
-    text
-        The text. A sum becomes a number with three significant figures, or a measurement with its error;
-        ``round(x, 1)`` sets the number of decimals, ``figures(x, 2)`` the number of significant figures. Other
-        functions are abs, sqrt, exp, ln; for a series of a run first, last, lowest, highest, mean and scatter (the
-        latter two over its last four fifths), and ``at(level, along, series)``; and ``word(x, 'warmer', 'colder')``,
-        which is the first word if x is above zero.
-    names
-        The runs by their letters.
-    setting
-        Whether the text is the value of a setting, to be written with all digits as it is typed.
+    A sum becomes a number with three significant figures, or a measurement with its error; ``round(x, 1)`` sets the
+    number of decimals, ``figures(x, 2)`` the number of significant figures. Other functions are abs, sqrt, exp, ln; for
+    a series of a run first, last, lowest, highest, mean and scatter (the latter two over its last four fifths), and
+    ``at(level, along, series)``; and ``word(x, 'warmer', 'colder')``, which is the first word if x is above zero. In
+    the value of a ``setting`` a number has all digits, as it is typed. A sum that cannot be worked out
+    raises ConfigError.
 
-    Raises
-    ------
-    ConfigError
-        If a sum cannot be worked out.
-
-    Examples
-    --------
     >>> class Box:
     ...     def fact(self, name):
     ...         return {"molecules": 800, "temperature": Measured(25.8, 0.9, 25.0)}[name]

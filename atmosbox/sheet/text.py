@@ -136,8 +136,6 @@ def _overlaid(english: Any, told: Any, place: str) -> Any:
 def text_of(module: ModuleType) -> Path | None:
     """Return the file with the text of a scene's sheet; a variant without a file has that of its original scene.
 
-    Examples
-    --------
     >>> from atmosbox import scenarios
     >>> text_of(scenarios.load("lifting-dry")).name
     'lifting_dry.sheet.toml'
@@ -152,8 +150,6 @@ def text_of(module: ModuleType) -> Path | None:
 def translated(path: str | os.PathLike[str], language: str) -> Path:
     """Return the file with the text of a sheet in a language, from that of the English text.
 
-    Examples
-    --------
     >>> translated("my_scene.sheet.toml", "de").name
     'my_scene.sheet.de.toml'
     """
@@ -165,8 +161,6 @@ def read(path: str | os.PathLike[str], language: str = "en") -> dict[str, Any]:
 
     Its sums are not yet worked out. In another language than English, its texts are those of a second file.
 
-    Examples
-    --------
     >>> read("no/such.sheet.toml")
     Traceback (most recent call last):
     atmosbox.errors.FileError: The words of the sheet cannot be read from no/such.sheet.toml: No such file or directory.

@@ -32,8 +32,6 @@ MOST_SETTINGS = 6
 def left_out(story: str) -> str:
     r"""Return the part of a scene's docstring on what is left out and exaggerated; empty if there is none.
 
-    Examples
-    --------
     >>> left_out("Air rises.\n\nModelled: spheres.\nLeft out: water,\nwind. Exaggerated: the pace.")
     'Left out: water, wind. Exaggerated: the pace.'
     """
@@ -42,21 +40,13 @@ def left_out(story: str) -> str:
 
 
 class AnyScene(NamedTuple):
-    """The object that the text of `WORDS` calls ``scene``.
-
-    Parameters
-    ----------
-    runs
-        The runs of the sheet; those that have been made give their headline numbers.
-    """
+    """The object that the text of `WORDS` calls ``scene``; those ``runs`` that were made give their headlines."""
 
     runs: Sequence[Trial]
 
     def fact(self, name: str) -> Any:
         """Return a text about the scene by name.
 
-        Examples
-        --------
         >>> from atmosbox.simulation import runner
         >>> AnyScene([Trial("A", "", runner.prepare("lifting-dry", {}))]).fact("quantity")
         'result'
@@ -202,17 +192,8 @@ def worksheet(
 class _Filling:
     """Works out the sums in the text of a sheet.
 
-    Parameters
-    ----------
-    path
-        The file of the text, for error messages.
-    runs
-        The runs of the sheet.
-    answers
-        Whether answers are given.
-    differs
-        What is printed in place of an answer in which a sum fails, if the settings are not those for which the text
-        was written.
+    ``path`` is the file of the text, for error messages, and ``answers`` whether answers are given. ``differs`` is
+    printed in place of an answer in which a sum fails, if the settings are not those for which the text was written.
     """
 
     def __init__(self, path: Path, runs: Sequence[Trial], *, answers: bool = False, differs: str = "") -> None:

@@ -15,8 +15,6 @@ _WIDEST = 30.0  # largest ratio of a setting to the nearest one that was measure
 def in_words(seconds: float) -> str:
     """Return an expected time in words.
 
-    Examples
-    --------
     >>> in_words(312.0), in_words(0.04)
     ('about 5 min, if this computer is as fast as ours', 'less than 1 s, if this computer is as fast as ours')
     """
@@ -32,8 +30,6 @@ def expected_time(prepared: Prepared) -> float | None:
     It is that of the nearest run that was measured, times powers of the ratios of their settings. The powers are those
     nearest to one (twice the size, twice the time) with which the measured runs agree.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> short, long = (expected_time(prepare("lifting-dry", {"ascent": ascent})) for ascent in (200.0, 800.0))
     >>> 3.0 < long / short < 5.0

@@ -107,8 +107,6 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
 
     A link that was cut off, or is that of another version, is refused.
 
-    Examples
-    --------
     >>> link = f"#atmosbox={__version__}&scene=temperature&seed=7&turns=60:temperature:120&frames=90&end"
     >>> scene, settings, replay = read_link(f"https://example.org/lab.html{link}")
     >>> scene, settings, replay.turns

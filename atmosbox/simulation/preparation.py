@@ -49,8 +49,6 @@ class Prepared:
     def unusual_engine(self) -> str:
         """The engine with its options; empty if it is the one on which the scene runs by default.
 
-        Examples
-        --------
         >>> prepare("temperature", {}).unusual_engine, prepare("temperature", {}, engine="dsmc").unusual_engine
         ('', 'dsmc')
         """
@@ -88,14 +86,13 @@ def prepare(
     accuracy: str | None = None,
     save_molecules: bool | None = False,
 ) -> Prepared:
-    """Load a scenario and check its settings; nothing is simulated yet.
+    """Load a scenario and check its settings, or raise an AtmosboxError; nothing is simulated yet.
 
     Parameters
     ----------
-    scene
-        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
-    settings
-        Values by name, numbers in the documented unit or texts with a unit.
+    scene, settings
+        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own; values by name, numbers in the
+        documented unit or texts with a unit.
     engine
         The engine with its options, such as ``stepped:delta=0.02``; None for that of the scene, see `usual_engine`.
     accuracy
@@ -103,16 +100,6 @@ def prepare(
         accuracy for time; values in `settings` are not changed.
     save_molecules
         Whether position and velocity of all molecules are saved in every frame; None if they take less than 10 MB.
-
-    Returns
-    -------
-    Prepared
-        The argument of `execute`.
-
-    Raises
-    ------
-    AtmosboxError
-        If the scene is unknown or a setting is refused.
 
     Examples
     --------
@@ -166,8 +153,6 @@ def agreed(
 def card(prepared: Prepared) -> Card:
     """Return the model card: the description, the facts for these settings, the parameters.
 
-    Examples
-    --------
     >>> dict(card(prepare("lifting-dry", {"molecules": 100})).facts)["gamma"]
     '7/5'
     """
@@ -185,8 +170,6 @@ def usual_engine(module: ModuleType, settings: SceneSettings) -> EngineChoice:
 
     It is the exact one, unless the scene has a function ``usual_engine`` of its settings that names another.
 
-    Examples
-    --------
     >>> str(prepare("atmosphere", {}).engine).partition(":")[0]
     'dsmc'
     """
@@ -249,8 +232,6 @@ def keeps_molecules(prepared: Prepared, setup: Setup) -> bool:
 def link_start(prepared: Prepared) -> str:
     """Return the part of a link that a run without a turned knob has: all but the seed and the number of frames.
 
-    Examples
-    --------
     >>> link_start(prepare("temperature", {"molecules": 400, "seed": 7})).partition("&")[2]
     'scene=temperature&molecules=400'
     """
@@ -266,8 +247,6 @@ def replayed(
 
     `scene` is its path if it is one of your own: a link alone never makes atmosbox run a program.
 
-    Examples
-    --------
     >>> replayed(f"#atmosbox={__version__}&scene=temperature&molecules=40&seed=7&frames=90&end").settings.molecules
     40
     """

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 def uninterrupted() -> Iterator[None]:
     """Delay Ctrl-C, and a request to end, until this block is complete.
 
-    Examples
-    --------
     >>> try:
     ...     with uninterrupted():
     ...         signal.raise_signal(signal.SIGINT)

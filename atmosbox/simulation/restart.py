@@ -54,8 +54,6 @@ class Restart(NamedTuple):
 def described(prepared: Prepared) -> dict[str, Any]:
     """Return all that must be the same for a run to continue bit for bit, by its name in messages.
 
-    Examples
-    --------
     >>> from atmosbox.simulation.preparation import prepare
     >>> sorted(described(prepare("temperature", {})))
     ['content of the scene', 'format of the state', 'processor', 'settings', 'sources of the engine', 'version']

@@ -57,15 +57,8 @@ def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> t
 
 
 def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
-    """Return the headlines that a dataset holds.
+    """Return the headlines that a dataset holds; raise FileError if it names some that it does not contain.
 
-    Raises
-    ------
-    FileError
-        If the file names headlines that it does not contain.
-
-    Examples
-    --------
     >>> from atmosbox import run
     >>> box = run("elastic-collisions", duration="2 s")
     >>> headlines_of(box)[0].name
@@ -93,8 +86,6 @@ def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
 def verify(dataset: xr.Dataset) -> list[Check]:
     """Check a dataset again: it is complete, its energy budget is closed, and it agrees with theory.
 
-    Examples
-    --------
     >>> from atmosbox import run
     >>> all(check.passed for check in verify(run("elastic-collisions", seed=2)))
     True

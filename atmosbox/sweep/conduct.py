@@ -42,13 +42,7 @@ Done: TypeAlias = tuple[Task, str, list[str]]
 
 
 def cores() -> int:
-    """Return the number of cores that this process may use.
-
-    Examples
-    --------
-    >>> cores() >= 1
-    True
-    """
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -36,8 +36,6 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
     The standard error comes from the scatter of the members or, if there are fewer than `FEWEST`, from their own
     standard errors, because the scatter of so few says little. A value is NaN where there is none.
 
-    Examples
-    --------
     >>> mean, se = mean_and_error(np.array([[1.0, 3.0, 5.0, 3.0]]), np.full((1, 4), 9.0))
     >>> mean.tolist(), round(float(se[0]), 3)
     ([3.0], 0.816)
@@ -63,16 +61,7 @@ def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], 
     ``NAME_by_member`` with ``NAME_by_member_se``, the values of each run. Also seed, status and residual of the
     energy budget of every run, and the reason if a run failed.
 
-    Parameters
-    ----------
-    plan
-        The sweep.
-    rows
-        The results of its runs by point and member, from `row`; others are missing.
-    failed
-        The reason of each run that failed, by point and member.
-    command
-        The command that the user typed, for the history in the file.
+    ``rows`` are the results by point and member, from `row`, and ``failed`` the reasons of the runs that failed.
     """
     # The order of the headlines is that of a run that has measured as many as any
     longest = sorted(rows.values(), key=lambda each: -len(each.attrs["names"]))

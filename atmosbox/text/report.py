@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 def next_command(command: str, path: Path) -> str:
     """Return a command to type next, with the path of a file.
 
-    Examples
-    --------
     >>> next_command("plot", Path("my run.nc")), next_command("plot", Path("-7.nc"))
     ("atmosbox plot 'my run.nc'", 'atmosbox plot ./-7.nc')
     """
@@ -58,8 +56,6 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
 
     A column in which no row has an entry is left out; below stand the numbers of two programs, if there are any.
 
-    Examples
-    --------
     >>> from atmosbox.scene.headline import Headline
     >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.5, "the box is small", "K", "degC", "temperature")
     >>> print("\n".join(headline_lines([warm], 100)))
@@ -137,8 +133,6 @@ def _too_small(headline: Headline) -> str:
 def ledger_line(ledger: float) -> str:
     """Return a line that says whether the energy budget is closed.
 
-    Examples
-    --------
     >>> ledger_line(3.2e-15), ledger_line(4e-6)
     ('energy budget: closed to 3e-15', 'energy budget: not closed, 4e-06 is missing, where at most 1e-10 may be')
     """
@@ -152,8 +146,6 @@ def ledger_line(ledger: float) -> str:
 def cost_line(collisions: int, seconds: float) -> str:
     """Return a line with the number of collisions of a run and the time that it took.
 
-    Examples
-    --------
     >>> cost_line(1234567, 2.0)
     '1,234,567 collisions in 2.0 s, 620,000 a second'
     """

@@ -16,8 +16,6 @@ def say(text: str) -> None:
 
     If the reader, for example ``head``, has closed the pipe, the command goes on.
 
-    Examples
-    --------
     >>> say("two\nlines")
     two
     lines
@@ -55,8 +53,6 @@ def _write(stream: TextIO | None, text: str) -> None:
 def say_json(content: Mapping[str, Any]) -> None:
     """Write the result as one JSON object; a number that is not finite becomes null.
 
-    Examples
-    --------
     >>> say_json({"value": float("nan"), "unit": "K"})
     {
       "value": null,

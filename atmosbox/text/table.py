@@ -10,22 +10,12 @@ NARROWEST = 20  # columns for a cell that is broken into lines
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int, narrowest: int = NARROWEST) -> list[str]:
-    r"""Return the lines of a table; no cell is cut off.
+    r"""Return the lines of a table at most `width` characters wide; no cell is cut off.
 
-    Parameters
-    ----------
-    header
-        The name of each column; empty if the columns have no names.
-    rows
-        The cells.
-    width
-        Largest number of characters in a line. To fit, the names of columns are broken into lines, then the last cell
-        of a row and the first; if that is not enough, each row becomes a block of lines.
-    narrowest
-        Least number of characters of a cell that is broken into lines; no word is broken.
+    To fit, the names of columns are broken into lines, then the last cell of a row and the first, to `narrowest`
+    characters at least and never within a word; if that is not enough, each row becomes a block of lines. An empty
+    header means columns without names.
 
-    Examples
-    --------
     >>> print("\n".join(table(["quantity", "theory"], [["temperature [degC]", "15.0"]], 80)))
     quantity            theory
     temperature [degC]  15.0
@@ -88,8 +78,6 @@ def story(text: str, width: int) -> list[str]:
 
     The backquotes around code are left out.
 
-    Examples
-    --------
     >>> story("Air that\n``rises`` cools.\n\n    T ~ p^(2/7)", 80)
     ['Air that rises cools.', '', '    T ~ p^(2/7)']
     """
@@ -107,8 +95,6 @@ def number(value: float, decimals: int | None = None, power: int = 0, sign: str 
     Negative decimals round to tens or hundreds. The power of ten is taken out: 9 shows 1.5e9 as 1.5 and "e9". The sign
     "+" shows that of a positive number too.
 
-    Examples
-    --------
     >>> number(288.149, 2), number(12345.0, -2), number(1.5e9, 1, 9, "+")
     ('288.15', '12300', '+1.5e9')
     """
@@ -126,8 +112,6 @@ def digits(value: float, error: float) -> tuple[int | None, int]:
     Two digits of the standard error are shown; decimals are None if there is none. The power is zero for numbers that
     are easy to read without it.
 
-    Examples
-    --------
     >>> digits(288.149, 0.0312), digits(1.5e9, 2e7), digits(3.0, 0.0)
     ((3, 0), (3, 9), (None, 0))
     """
@@ -142,8 +126,6 @@ def digits(value: float, error: float) -> tuple[int | None, int]:
 def measurement(value: float, error: float) -> str:
     """Return a measurement with its standard error as text.
 
-    Examples
-    --------
     >>> measurement(288.149, 0.0312), measurement(1.52345e9, 2e7), measurement(15.0, 0.0)
     ('288.149 ± 0.031', '(1.523 ± 0.020)e9', '15')
     """

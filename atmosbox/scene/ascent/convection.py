@@ -80,10 +80,6 @@ def convection_headlines(
 def _smoother(number: int) -> Array:
     """Return the matrix that fits a parabola to each value and its neighbours, and takes the parabola's value.
 
-    Examples
-    --------
-    A parabola is not changed:
-
     >>> curve = np.arange(20.0) ** 2
     >>> bool(np.allclose(_smoother(20) @ curve, curve))
     True

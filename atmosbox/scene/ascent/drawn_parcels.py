@@ -82,13 +82,7 @@ def entropy_gain(cloud: Cloud) -> Gain:
 
 
 def gathered(rate: Array, moment: Array) -> Array:
-    """Return the integral of a rate up to each moment, from the start at zero.
-
-    Examples
-    --------
-    >>> gathered(np.array([2.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]))
-    array([2., 4., 7.])
-    """
+    """Return the integral of a rate up to each moment, from the start at zero."""
     steps = np.diff(moment, prepend=0.0)
     return np.cumsum(steps * 0.5 * (rate + np.concatenate([rate[:1], rate[:-1]])))
 
@@ -117,19 +111,7 @@ class Parcels(NamedTuple):
 
 
 def draw(ascent: MoistAscent, pressure: Array, frames: int, samples: int, *, ideal: bool) -> Parcels:
-    """Return parcels at pressures of the environment in the middle of each recorded frame : (frame,) [Pa].
-
-    Examples
-    --------
-    Chance leaves a parcel of the scene lifting-moist some tenths of a kelvin warmer or colder at the top:
-
-    >>> from atmosbox import scenarios
-    >>> from atmosbox.simulation.preparation import prepare
-    >>> ascent = scenarios.load("lifting-moist")._ascent(prepare("lifting-moist", {}).settings)
-    >>> found = draw(ascent, np.geomspace(1e5, 3e4, 60), 60, 1, ideal=True)
-    >>> bool(0.2 < 240.0 * found.warmth[:, -1].std() < 0.5)
-    True
-    """
+    """Return parcels at pressures of the environment in the middle of each recorded frame : (frame,) [Pa]."""
     return _draw(ascent, tuple(pressure.tolist()), frames, samples, ideal)
 
 

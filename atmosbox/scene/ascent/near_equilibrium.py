@@ -47,35 +47,23 @@ class Cloud:
     .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
               \approx 2.6 \, s .
 
-    Parameters
-    ----------
-    ascent
-        The ascent.
-    pressure : (moment,)
-        Pressures in the order in which the parcel meets them [Pa].
-    share : (moment,)
-        Share of the time of the whole ascent that has passed at each of them, 0 to 1.
-    ideal
-        Whether molecules have no volume.
-    path
-        Temperature and water at these pressures, if they are known already.
+    It is made for pressures : (moment,) in the order in which the parcel meets them [Pa], and the share of the time of
+    the whole ascent, 0 to 1, that has passed at each. With ``ideal``, molecules have no volume; ``path`` are
+    temperature and water at these pressures, if they are known already.
 
     Attributes
     ----------
-    moment, pressure, temperature
-        Time [mean free times at the start], pressure [Pa] and temperature [K]; all arrays are (moment,).
+    moment, pressure, temperature : (moment,)
+        Time [mean free times at the start], pressure [Pa] and temperature [K].
     vapour, gas, liquid, rained
-        Numbers of molecules of vapour, of vapour and air, of liquid and of rain according to theory, which leaves out
-        clusters in clear air.
+        Numbers of molecules of vapour, of vapour and air, of liquid and of rain, without clusters in clear air.
     clustered, haze
-        Mean number of liquid molecules that fluctuations add to ``liquid``, and number above which liquid is a cloud.
-    resists, yields : (moment, 2, 2)
-        G and L.
-    warms : (moment, 2)
-        Derivative of the logarithm of the gas temperature by x at constant volume.
+        Mean number of liquid molecules that fluctuations add to ``liquid``; number above which liquid is a cloud.
+    resists, yields, warms
+        G and L, (moment, 2, 2); derivative by x of the logarithm of the gas temperature, at constant volume,
+        (moment, 2).
     clear_heat, cloudy_heat, liquid_heat
-        Heat capacities, in k: of the whole parcel at constant pressure if no vapour condenses, and with the heat of
-        condensation; of liquid and nuclei.
+        Heat capacities [k]: of the parcel at constant pressure, without and with condensation; of liquid and nuclei.
     dries
         Number of molecules of vapour that a cloud gains per unit of entropy, which is k, at constant pressure.
     slope, vapour_slope, expansion
@@ -83,33 +71,26 @@ class Cloud:
         clear air; and the time derivative of the logarithm of the volume.
     height
         Height of the box over the thermal speed sqrt(kT/m) of air [mean free times].
-    free_time, meets
-        Mean free time of the gas, and mean time until a molecule of air hits the mist.
-    hits
-        Number of molecules that hit or leave the mist per unit of time.
+    free_time, meets, hits
+        Mean free time; mean time until a molecule of air hits the mist; number of molecules that hit or leave the mist
+        per unit of time.
     humidity, latent
-        Relative humidity, at most 1; latent heat of a molecule, in kT.
+        Relative humidity, at most 1; latent heat of a molecule [kT].
     air, all_molecules
         Molecules of dry air, and of air and water at the start.
     keeps, rains
         Molecules of liquid that the cloud holds before it rains, infinite if it does not rain; and the rate at which
         each molecule in excess falls out.
 
-    Examples
-    --------
-    In the cloud of the scene lifting-moist the number of liquid molecules scatters by a dozen at 700 hPa:
+    In the cloud of the scene lifting-moist the number of liquid molecules scatters by a dozen at 700 hPa, and some 31
+    may be liquid there by chance:
 
     >>> from atmosbox import scenarios
     >>> from atmosbox.simulation.preparation import prepare
     >>> ascent = scenarios.load("lifting-moist")._ascent(prepare("lifting-moist", {}).settings)
     >>> cloud = Cloud(ascent, np.array([7.05e4, 7.0e4, 6.95e4]), np.array([0.25, 0.255, 0.26]))
-    >>> round(float(cloud.liquid_scatter[1]))
-    12
-
-    Liquid is a cloud if it is more than chance puts together, some 31 molecules there:
-
-    >>> round(float(cloud.haze[1]))
-    31
+    >>> round(float(cloud.liquid_scatter[1])), round(float(cloud.haze[1]))
+    (12, 31)
     """
 
     def __init__(
@@ -217,8 +198,6 @@ def _counted(vapour: Array, liquid: Array, humidity: Array, warming: Array) -> t
     One more is as likely as the relative humidity says; each molecule that joins is missing in the vapour, and warms
     the air. So :math:`P(n + 1) / P(n) = f \, (v + l - n) / v \, e^{-b (n + 1/2 - l)}`.
 
-    Examples
-    --------
     In clear air the mean is RH / (1 - RH), in a cloud that of theory:
 
     >>> many, few = np.array([1e6]), np.array([1e-5])

@@ -37,23 +37,11 @@ gone.
 class MoistAscent:
     """The ascent of moist air according to theory.
 
-    Parameters
-    ----------
-    molecules
-        Number of molecules at the start, of air and of vapour together.
-    diameter
-        Diameter of a molecule [m].
-    temperature, pressure, vapour_pressure
-        At the start [K, Pa, Pa].
-    route
-        Pressure of the environment at equal intervals of time, from the start to the end [Pa].
-    length
-        Duration of the ascent, in mean free times at its start.
-    area
-        Area of all droplets, in units of the floor of the box at the start.
-    most_liquid
-        Liquid that the cloud holds before it rains, as mass per mass of dry air; infinite if it does not rain [kg
-        kg-1].
+    At the start there are ``molecules`` of air and vapour together, of a ``diameter`` [m], at ``temperature`` [K],
+    ``pressure`` and ``vapour_pressure`` [Pa]. ``route`` is the pressure of the environment at equal intervals of time,
+    from the start to the end [Pa], ``length`` the duration in mean free times at the start, and ``area`` that of all
+    droplets, in units of the floor of the box at the start. ``most_liquid`` is how much liquid the cloud holds before
+    it rains, as mass per mass of dry air [kg kg-1]; infinite if it does not rain.
     """
 
     molecules: int
@@ -179,8 +167,6 @@ class MoistAscent:
 def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "the pressure at the ground") -> None:
     """Refuse an ascent that does not go up.
 
-    Examples
-    --------
     >>> refuse_descent(990.0, 1000.0)
     Traceback (most recent call last):
         ...
@@ -195,8 +181,6 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
 def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     """Refuse a dewpoint above the temperature, both in degC.
 
-    Examples
-    --------
     >>> refuse_supersaturation(26.0, 25.0)
     Traceback (most recent call last):
     ...

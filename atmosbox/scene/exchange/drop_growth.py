@@ -36,21 +36,9 @@ class DropGrowth:
     with the flux J of saturated vapour, the number W of all molecules of water in the box, and the number :math:`W_s`
     of molecules of vapour that saturates the space outside the drops.
 
-    Parameters
-    ----------
-    box
-        The moist air at the start, without the drops.
-    kinds
-        The kinds of drops.
-    water
-        Number of molecules of water in each drop at the start.
-    width
-        Ratio w of the width of the drops in the box to that of real drops.
-    tension
-        Surface tension [N/m].
+    ``box`` is the moist air at the start, without the drops; each drop of the ``kinds`` starts with ``water``
+    molecules; ``width`` is w, and ``tension`` the surface tension [N/m].
 
-    Examples
-    --------
     Without salt, drops of sixty molecules evaporate completely at a humidity of 250 %:
 
     >>> growth = DropGrowth(MoistBox(6000, 293.15, 1e4, 2.5), (DropKind(2, 0.0, 3e-29),), 60, 3.0, 0.0727)

@@ -20,19 +20,9 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 class MoistBox:
     """A cube of moist air between heat baths, with liquid in it.
 
-    Parameters
-    ----------
-    molecules
-        Number of molecules, of air and of vapour together.
-    temperature, pressure
-        Of the walls [K], and of the gas at the start [Pa].
-    humidity
-        Relative humidity at the start [1].
-    ideal
-        Whether molecules have no volume.
+    There are ``molecules`` of air and vapour together, without volume if ``ideal``; ``temperature`` is that of the
+    walls [K], ``pressure`` and ``humidity`` are those of the gas at the start [Pa, 1].
 
-    Examples
-    --------
     The excess over saturation condenses; with fewer molecules it fluctuates more:
 
     >>> box = MoistBox(10_000, 293.15, 1e5, 1.5)
@@ -118,8 +108,6 @@ class MoistBox:
         The volume of real molecules is too small to show this: drops s times too wide have s^3 times the volume. The
         last factor counts the ways to divide L molecules among D drops; an empty drop has none to lose.
 
-        Examples
-        --------
         >>> air = MoistBox(10_000, 293.15, 1e5, 1.5)
         >>> [round(float(air.over_drops(300, 1, size * 0.52)), 3) for size in (1, 6, 8)]
         [1.001, 1.176, 1.467]

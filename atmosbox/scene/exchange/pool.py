@@ -35,18 +35,9 @@ _stiffness = getattr(stiffness, "py_func", stiffness)  # called once: not worth 
 class AirOverPool:
     """Air over a pool under a piston that keeps the pressure.
 
-    Parameters
-    ----------
-    molecules
-        Number of molecules in the gas at the start, of air and of vapour together.
-    pool
-        Number of molecules in the liquid at the start.
-    diameter
-        Diameter of a molecule [m].
-    temperature, pressure, vapour_pressure
-        At the start [K, Pa, Pa].
-    ideal
-        Whether molecules have no volume.
+    At the start there are ``molecules`` of air and vapour together, and ``pool`` molecules in the liquid, all of one
+    ``diameter`` [m] and without volume if ``ideal``; ``temperature`` [K], ``pressure`` and ``vapour_pressure`` [Pa] are
+    those at the start.
 
     Attributes
     ----------
@@ -105,8 +96,6 @@ class AirOverPool:
     def vapour_pressure_at(self, temperature: float) -> float:
         """Return the vapour pressure between walls of a temperature [K]: saturation, or that of all the water [Pa].
 
-        Examples
-        --------
         A small pool in a warm room dries up:
 
         >>> room = AirOverPool(1000, 10, 3.7e-10, 293.15, 1e5, 1000.0)

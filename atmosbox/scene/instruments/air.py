@@ -24,8 +24,6 @@ def open_faces(parcel: Parcel) -> Array:
 
     Zero where a periodic axis has no wall.
 
-    Examples
-    --------
     >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 3))
     >>> open_faces(pair)

@@ -23,8 +23,6 @@ def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:
     liquid; two of them in each other's well belong to the same drop. A molecule at the surface, in the well of one of
     them, belongs to that drop as well.
 
-    Examples
-    --------
     Six molecules that are all in each other's wells, one at the surface, and one alone:
 
     >>> import itertools

@@ -173,8 +173,6 @@ def modes_of_flow(rows: int, columns: int, *, periodic: bool) -> tuple[Array, Ar
 
     Across it they are cosines, and sines if it is periodic.
 
-    Examples
-    --------
     >>> high, across = modes_of_flow(2, 4, periodic=True)
     >>> high.round(3).tolist(), across.shape[0]
     ([0.707, 0.707], 2)

@@ -82,18 +82,11 @@ class Lift(_Rising):
 
     Parameters
     ----------
-    driver
-        The driver of the piston, which measures the pressure of the parcel.
-    environment
-        The environment.
+    driver, environment
+        The driver of the piston, which measures the pressure of the parcel; the environment.
     scatter
         Standard deviations of the temperature from run to run, as shares of it, for the pressures of the environment
         [Pa] at the ends of the frames; unknown unless it is given, see `atmosbox.theory.Ascent.scatter`.
-
-    Attributes
-    ----------
-    environment
-        The environment.
     """
 
     def __init__(
@@ -120,7 +113,7 @@ class Lift(_Rising):
 
 
 class MoistLift(_Rising):
-    r"""A parcel of moist air on its ascent: temperature and pressure of parcel and environment against height.
+    """A parcel of moist air on its ascent: temperature and pressure of parcel and environment against height.
 
     Temperature and pressure are means over the samples within a frame; for the pressure, of its logarithm. The number
     of molecules of vapour fluctuates all the time, and so does the temperature: each molecule that condenses warms the
@@ -129,10 +122,8 @@ class MoistLift(_Rising):
 
     Parameters
     ----------
-    driver
-        The driver of the piston, which measures the pressure of the parcel.
-    environment
-        The environment.
+    driver, environment
+        The driver of the piston, which measures the pressure of the parcel; the environment.
     curve
         Temperatures [K] that theory expects along a sequence of pressures [Pa], in the order in which they are met.
     scatter

@@ -99,8 +99,6 @@ def expected_share(bins: int, passed: float) -> tuple[Array, Array]:
 def entropy_of_counts(left: Counts, right: Counts) -> float:
     """Return the entropy of mixing per molecule, in units of k, of two gases counted in bins; see `Mixing`.
 
-    Examples
-    --------
     Gases that are apart have none; one molecule of each in a bin gives ln 2 plus the correction for few molecules:
 
     >>> entropy_of_counts(np.array([9, 0]), np.array([0, 9])), round(entropy_of_counts(np.array([1]), np.array([1])), 4)

@@ -20,17 +20,7 @@ LAWS = ("specular", "periodic", "heat_bath", "piston", "pool")
 
 
 def wall_laws(parcel: Any) -> tuple[str, ...]:
-    """Return the law of each of the six walls, in the order x low, x high, y low, y high, z low, z high.
-
-    Parameters
-    ----------
-    parcel : Parcel
-        A box of molecules, of any engine.
-
-    Returns
-    -------
-    tuple of str
-        Names from `LAWS`.
+    """Return the law, a name in `LAWS`, of each wall of a box: x low, x high, y low, y high, z low, z high.
 
     Examples
     --------

@@ -27,8 +27,6 @@ def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDAr
 
     The liquid is in the middle of a periodic box, else on the floor; lengths are in diameters.
 
-    Examples
-    --------
     >>> height = np.arange(0.125, 40.0, 0.25)
     >>> inner, outer = inner_and_outer(height, np.where(abs(height - 20.0) < 6.0, 0.7, 0.02), True)
     >>> [float(height[which].min()) for which in (inner, outer)], float(height[inner].max())

@@ -18,8 +18,6 @@ _CRITICAL = 647.0  # K; there is no saturation above it
 def gas_kT(parcel: Parcel) -> float:
     """Return the temperature of the gas from all energy of its molecules, rotation included [energy].
 
-    Examples
-    --------
     >>> from atmosbox.engine import ParcelSet
     >>> gas_kT(ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 3))) * 6.0
     5.0

@@ -95,13 +95,7 @@ def _split(cell: str) -> tuple[str, str | None]:
 
 
 def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, str | None]]:
-    """Return the column of each quantity in a table and its unit, or None; ``where`` is the place of the header.
-
-    Examples
-    --------
-    >>> stated_columns(["Td", "T_K", "pressure [hPa]"], "a.csv, line 1")
-    {'pressure': (2, 'hPa'), 'temperature': (1, 'K'), 'dewpoint': (0, None)}
-    """
+    """Return the column of each quantity in a table and its unit, or None; ``where`` is the place of the header."""
     cells = [_split(cell) for cell in header]
     found: dict[str, tuple[int, str | None]] = {}
     for quantity, measure in QUANTITIES.items():
@@ -119,8 +113,6 @@ def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, st
 def unit_of(quantity: str, text: str | None, where: str) -> Unit:
     """Return the unit of a column from its text, which may be empty; refuse one of another quantity.
 
-    Examples
-    --------
     >>> unit_of("pressure", "millibars", "a.csv, line 1").up
     100.0
     """
@@ -135,21 +127,13 @@ def unit_of(quantity: str, text: str | None, where: str) -> Unit:
 
 
 def in_si(values: Floats, unit: Unit) -> Floats:
-    """Return values of a unit in SI units; NaN stays NaN.
-
-    Examples
-    --------
-    >>> in_si(np.array([1000.0, 850.0]), known_unit("hPa"))
-    array([100000.,  85000.])
-    """
+    """Return values of a unit in SI units; NaN stays NaN."""
     return np.asarray(values * (unit.up / unit.down) + unit.offset, dtype=np.float64)
 
 
 def number(token: str, quantity: str, where: str) -> float:
     """Return the number in a cell, NaN if the cell marks a missing value: empty, NaN, NA, M, dashes, slashes, stars.
 
-    Examples
-    --------
     >>> number(" −12.5 ", "temperature", "a.csv, line 3"), number("////", "temperature", "a.csv, line 4")
     (-12.5, nan)
     """
@@ -174,15 +158,7 @@ def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
 
 
 def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> None:
-    """Refuse values : (level,) in a unit that do not occur in the atmosphere, and name the unit that they look like.
-
-    Examples
-    --------
-    >>> check_plausible("temperature", np.array([298.0, 290.0]), "degC", lambda level: f"a.csv, line {level + 2}")
-    Traceback (most recent call last):
-    atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC does not occur in the atmosphere and looks
-    like K: name its unit, as in "temperature [K]".
-    """
+    """Refuse values : (level,) in a unit that do not occur in the atmosphere, and name the unit that they look like."""
     measure = QUANTITIES[quantity]
     known = known_unit(unit) or Unit(measure.si)
     wrong = _first_implausible(quantity, values, known)

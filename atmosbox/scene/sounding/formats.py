@@ -66,15 +66,6 @@ def igra(text: Text) -> Table | None:
 
     The columns have fixed widths (``igra2-data-format.txt``, doi:10.7289/V5X63K0Q): pressure [Pa], temperature and
     dewpoint depression [0.1 K]; -8888 marks a value that failed a quality check.
-
-    Examples
-    --------
-    A level at the surface, 972 hPa, with 24.3 degC and a dewpoint 5.1 K below:
-
-    >>> head = "#USM00072357 2014 09 10 00 2301    1 ncdc-gts ncdc-gts  352211   -974647"
-    >>> row = "21  0000  97200B  345B  243B-9999    51   160    51 "
-    >>> {name: float(column[0]) for name, column in igra(Text([head, row], "a.txt", "a")).values.items()}
-    {'pressure': 97200.0, 'temperature': 24.3, 'dewpoint': 19.2}
     """
     header = _IGRA.fullmatch(text.lines[0].rstrip())
     if header is None:
@@ -103,18 +94,6 @@ def bufkit(text: Text) -> Table | None:
 
     The values of a level may fill several lines: they are told apart by their number, not by their position (GEMPAK's
     ``namsnd``).
-
-    Examples
-    --------
-    >>> lines = '''SNPARM = PRES;TMPC;DWPC;HGHT
-    ... STID = KOUN STNM = 723570 TIME = 140910/0000
-    ... PRES TMPC DWPC
-    ... HGHT
-    ... 965.80 22.24 18.84
-    ... 357.20'''
-    >>> found = bufkit(Text(lines.splitlines(), "oun.buf", "oun"))
-    >>> found.name, float(found.values["dewpoint"][0])
-    ('KOUN 140910/0000', 18.84)
     """
     named = [(i, found) for i, line in enumerate(text.lines[:20]) if (found := _SNPARM.fullmatch(line))]
     if not named:
@@ -143,14 +122,7 @@ def bufkit(text: Text) -> Table | None:
 
 
 def sharppy(text: Text) -> Table | None:
-    """Return the table of SHARPpy's text between %RAW% and %END%, below the names of the columns and a title.
-
-    Examples
-    --------
-    >>> lines = ["%RAW%", " 989.00, 210.00, 32.60, 23.60, 265.00, 10.00", "%END%"]
-    >>> sharppy(Text(lines, "bna.txt", "bna")).values["temperature"]
-    array([32.6])
-    """
+    """Return the table of SHARPpy's text between %RAW% and %END%, below the names of the columns and a title."""
     marks = [line.strip().upper() for line in text.lines]
     if "%RAW%" not in marks:
         return None
@@ -174,12 +146,6 @@ def wyoming(text: Text) -> Table | None:
 
     Columns are seven characters wide and may be blank: below the ground, and above the last report of humidity or wind.
     The indices after the table are not read.
-
-    Examples
-    --------
-    >>> lines = ["   PRES   HGHT   TEMP   DWPT", "    hPa     m      C      C ", " 1000.0     -7"]
-    >>> wyoming(Text([*lines, "  959.0    345   22.2   19.0"], "oun.txt", "oun")).values["temperature"]
-    array([ nan, 22.2])
     """
     heads = [i for i, line in enumerate(text.lines) if _WYOMING.fullmatch(line)]
     if not heads:
@@ -218,8 +184,6 @@ def delimited(text: Text) -> Table | None:
 
     The units are written with the names. Lines that start with # are comments.
 
-    Examples
-    --------
     >>> delimited(Text(["T_K,p/hPa,Td_K", "298,1000,290"], "a.csv", "a")).values["pressure"]
     array([1000.])
     """

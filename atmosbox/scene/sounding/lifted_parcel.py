@@ -16,15 +16,7 @@ from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
 
 class Level(NamedTuple):
-    """A level that a lifted parcel meets.
-
-    Parameters
-    ----------
-    pressure
-        Pressure [Pa].
-    temperature
-        Temperature of the parcel there [K].
-    """
+    """A level that a lifted parcel meets: its pressure [Pa], and the temperature of the parcel there [K]."""
 
     pressure: float
     temperature: float
@@ -35,16 +27,12 @@ class Indices(NamedTuple):
 
     Parameters
     ----------
-    lcl
-        Lifting condensation level.
-    lfc
-        Level of free convection, None if there is none.
-    el
-        Equilibrium level, None if there is none within the sounding.
-    cape
-        Convective available potential energy, 0 if the parcel never becomes free [J kg-1].
-    cin
-        Convective inhibition, 0 or negative [J kg-1].
+    lcl, lfc, el
+        Lifting condensation level; level of free convection, None if there is none; equilibrium level, None if there is
+        none within the sounding.
+    cape, cin
+        Convective available potential energy, 0 if the parcel never becomes free, and convective inhibition, 0 or
+        negative [J kg-1].
     """
 
     lcl: Level

@@ -45,17 +45,13 @@ class Sounding:
 
     Parameters
     ----------
-    pressure : (level,)
-        Pressure, decreasing from each level to the next [Pa].
-    temperature : (level,)
-        Temperature [K].
+    pressure, temperature : (level,)
+        Pressure, decreasing from each level to the next [Pa], and temperature [K].
     dewpoint : (level,)
         Dewpoint with respect to liquid water, not above the temperature; if rounding has put it up to 0.05 K above the
         temperature, it is set to the temperature [K].
-    name
-        The name of the ascent.
-    source
-        Where it comes from: the file and its format, or the paper.
+    name, source
+        The name of the ascent, and where it comes from: the file and its format, or the paper.
     remarks
         What reading has left out or filled in, one sentence each.
     places
@@ -132,8 +128,6 @@ class Sounding:
 def widest_gap(pressure: Floats) -> tuple[float, int]:
     """Return the widest gap between two levels below the 300 hPa surface [Pa], and the index of the level below it.
 
-    Examples
-    --------
     >>> widest_gap(np.array([1000e2, 850e2, 700e2, 500e2, 250e2, 20e2]))
     (25000.0, 3)
     """
@@ -145,8 +139,6 @@ def widest_gap(pressure: Floats) -> tuple[float, int]:
 def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
     """Return what is doubtful in a possible sounding, one sentence each.
 
-    Examples
-    --------
     A level at 300 hPa with 0 degC instead of -43.5 degC:
 
     >>> p = np.array([1000e2, 850e2, 700e2, 500e2, 400e2, 300e2, 250e2])
@@ -176,16 +168,7 @@ def _doubts(pressure: Floats, temperature: Floats) -> list[str]:
 
 
 def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, place: Place) -> None:
-    """Refuse levels that do not make an ascent: too few, not in order, a dewpoint above its temperature, a wide gap.
-
-    Examples
-    --------
-    >>> p = np.array([1000e2, 900e2, 950e2, 700e2, 500e2])
-    >>> check_levels(p, np.full(5, 280.0), np.full(5, 270.0), lambda level: f"a.csv, line {level + 2}")
-    Traceback (most recent call last):
-    atmosbox.errors.SoundingError: a.csv, line 4: the pressure of 950 hPa is not below the 900 hPa of the level
-    before it: put the levels in order, ground first.
-    """
+    """Refuse levels that do not make an ascent: too few, not in order, a dewpoint above its temperature, a wide gap."""
     count, hpa = pressure.size, pressure / 100
     if count < FEWEST_LEVELS:
         where = place(count - 1)

@@ -30,17 +30,6 @@ def profile(path: str | os.PathLike[str], file: str, name: str) -> Table:
     """Return the profile in a netCDF file; `file` is its name in messages, `name` that of the ascent without a title.
 
     Variables are found by their standard_name, or else by their own name; pressure may be a coordinate.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> import xarray as xr
-    >>> ascent = xr.Dataset({name: ("level", [280.0, 275.0], {"units": "K"}) for name in ("temperature", "dewpoint")})
-    >>> ascent = ascent.assign_coords(level=("level", [1000.0, 850.0], {"units": "hPa"}))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = ascent.to_netcdf(f"{folder}/a.nc")
-    ...     profile(f"{folder}/a.nc", "a.nc", "a").values["pressure"]
-    array([1000.,  850.])
     """
     import xarray as xr
 
@@ -189,8 +178,6 @@ def sounding_of(table: Table) -> Sounding:
     as in MetPy. Above the highest dewpoint, where radiosondes cease to report it, the dewpoint is set 30 K below the
     temperature. Of a level that is given twice, one is left out. The remarks list all this.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> columns = {
     ...     "pressure": np.array([1000.0, 850.0, 700.0, 500.0, 300.0]),
