@@ -72,7 +72,7 @@ def stoppable() -> Iterator[None]:
         came.append(number)
         raise Stopped(128 + number)
 
-    def dropped(what: sys.UnraisableHookArgs) -> None:
+    def dropped(what: "sys.UnraisableHookArgs") -> None:
         if isinstance(what.exc_value, Stopped):
             sent.append(threading.Timer(0.05, signal.raise_signal, [came[-1]]))
             sent[-1].start()
