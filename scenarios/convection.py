@@ -321,7 +321,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         "box": f"{depth}, {settings.width * settings.height:.3g} km wide, {settings.height:g} km high",
         "real molecules per simulated one": f"{scale.weight:.2g}",
         "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
-        f"temperature falls by {steep:.3g} K/km if heat is conducted",
+        f"temperature falls by {steep:.3g} K/km on average",
         "adiabat": f"{1000.0 * lapse:.3g} K/km at the mean density",
         "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
         "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
@@ -449,7 +449,7 @@ def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> 
     heat = np.diff(late.heat_from_wall.values, axis=0) / np.diff(late.elapsed_time.values)[:, None]
     unit = rest.heat * box.width * box.scale.total_energy / box.scale.time
     passed = overlapping_average(0.5 * (heat[:, 4] - heat[:, 5]) / unit, BLOCKS)
-    label, known = "heat, over that conducted at rest (Nusselt number)", 1.0 if still and box.usual else None
+    label, known = "heat / heat conducted at rest (Nusselt number)", 1.0 if still and box.usual else None
     return lapse, Headline.of_mean("nusselt_number", label, passed, known, "1")
 
 

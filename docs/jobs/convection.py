@@ -63,7 +63,7 @@ def conducted(outcome: "runner.Outcome") -> float:
 SHOWN = [
     "wind [m/s]",
     "lapse rate of the core [K/km]",
-    "heat, over that at rest",
+    "heat / heat at rest",
     "marked molecules in the upper half [%]",
 ]
 
@@ -140,7 +140,7 @@ def onset(found: Findings) -> None:
     found.number("seeds", len(measured_by["onset"]) // len(rows))
     found.number("gravity", f"{measured_by['theory']['onset']:.1f}")
     head = ["gravity [m/s²]", "Rayleigh number", "growth by theory [1/s]", "turned over", "share, 95 % interval [%]"]
-    found.table([*head, "heat, over that at rest"], rows)
+    found.table([*head, "heat / heat at rest"], rows)
 
 
 @job("convection-size")
@@ -187,9 +187,9 @@ def adiabat(found: Findings) -> None:
             "gravity [m/s²]",
             "molecules",
             "height [mean free paths]",
-            "at rest, over the adiabat",
-            "core, over the adiabat",
-            "heat, over that at rest",
+            "at rest / adiabat",
+            "core / adiabat",
+            "heat / heat at rest",
         ],
         rows,
     )
@@ -201,7 +201,7 @@ def stable(found: Findings) -> None:
     outcomes = [measured(case="stable", molecules=15_000, duration=800.0, seed=seed) for seed in STILL]
     for name, what, unit in (
         ("mean_square_wind", "mean square of the wind", "m²/s²"),
-        ("nusselt_number", "heat, over that at rest", ""),
+        ("nusselt_number", "heat / heat at rest", ""),
     ):
         values = np.array([each[name].value for each, _ in outcomes])
         error = float(np.std(values, ddof=1)) / len(values) ** 0.5
