@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atmosbox.page.document import _text, words
+from atmosbox.page.document import packaged, words
 from atmosbox.page.saved_run import pages
 from atmosbox.plot.curve import curve
 from atmosbox.scene.panels import Line, Panel, from_json, to_json
@@ -182,7 +182,7 @@ def test_the_page_draws_the_same_numbers_as_the_figure_of_the_run(browser, run):
     page.route(
         "http://page.test/*.js",
         lambda route: route.fulfill(
-            body=_text("web", route.request.url.rpartition("/")[2]), content_type="text/javascript"
+            body=packaged("web", route.request.url.rpartition("/")[2]), content_type="text/javascript"
         ),
     )
     page.goto("http://page.test/")
