@@ -3,7 +3,7 @@
 Each property of all molecules is one array (a column), so that a loop over molecules reads memory in order and the
 compiler can compute eight of them at once. In every step molecules are *counted* by cell and an index of them is
 written in the order of cells (a counting sort that keeps their order within a cell); now and then the columns
-themselves are put in that order. Every thread counts one stretch of the columns, and its places in the index follow
+themselves are put in that order. Every thread counts one part of the columns, and its places in the index follow
 those of the threads before it: the index is the same for any number of threads.
 """
 
