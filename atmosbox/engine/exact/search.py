@@ -69,24 +69,32 @@ def _widened(slot, up):
 
 
 @kernel
-def _back(slot, number, length):
-    """Return how far a molecule is beyond an end of a periodic axis, a length or 0, and its slot inside."""
-    turns = (1 if slot >= 2 * number else 0) - (1 if slot < 0 else 0)
-    return turns * length if turns != 0 else 0.0, slot - 2 * turns * number
+def _turns(slot, number):
+    """Return by how many turns, -1, 0 or 1, a slot lies outside a periodic axis of ``number`` cells."""
+    return (1 if slot >= 2 * number else 0) - (1 if slot < 0 else 0)
 
 
 @kernel
 def _brought_back(i, at, sx, sy, sz, gas):
     """Return the `Motion` of molecule i and its slots, brought back into the periodic box; update its record."""
     cells, box, molecule = gas.cells, gas.box, gas.molecules[i]
-    dx, sx = _back(sx, cells.number_x, box.length_x)
-    dy, sy = _back(sy, cells.number_y, box.length_y)
-    dz, sz = _back(sz, cells.number_z, box.length_z)
-    if dx != 0.0 or dy != 0.0 or dz != 0.0:
-        molecule.x -= dx
-        molecule.y -= dy
-        molecule.z -= dz
-    return Motion(at.x - dx, at.y - dy, at.z - dz, at.vx, at.vy, at.vz), sx, sy, sz
+    x, y, z = at.x, at.y, at.z
+    turns = _turns(sx, cells.number_x)
+    if turns != 0:
+        x -= turns * box.length_x
+        sx -= 2 * turns * cells.number_x
+        molecule.x -= turns * box.length_x
+    turns = _turns(sy, cells.number_y)
+    if turns != 0:
+        y -= turns * box.length_y
+        sy -= 2 * turns * cells.number_y
+        molecule.y -= turns * box.length_y
+    turns = _turns(sz, cells.number_z)
+    if turns != 0:
+        z -= turns * box.length_z
+        sz -= 2 * turns * cells.number_z
+        molecule.z -= turns * box.length_z
+    return Motion(x, y, z, at.vx, at.vy, at.vz), sx, sy, sz
 
 
 @kernel
@@ -167,7 +175,19 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
 def search(i, t, at, boundary, gas, modes):
     """Update the cells of molecule i, whose `Motion` at time t is ``at``, and search for its soonest contact.
 
-    ``boundary`` is the boundary of a cell that it has reached, 0 to 5; `CONTACT` or more if its velocity may be new.
+    Parameters
+    ----------
+    i, t, at
+        Index of the molecule, the time, and its `Motion`.
+    boundary
+        The boundary of a cell that it has reached, 0 to 5; `CONTACT` or more if its velocity may be new.
+    gas, modes
+        All data of the engine, and the flags of the scene.
+
+    Returns
+    -------
+    Found
+        Its `Motion`, its slots and its contact.
     """
     cells, copies = gas.cells, gas.cells.copies
     event = gas.events[i]
