@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 _SMALL = 1e-6  # m; a box that is larger is written in metres
 _DALTON = 1.66053906892e-27  # kg, CODATA 2022
-_NAMES = ("N", "O")  # for a molecule of air and of water: readers allow only names of elements
+_NAMES = ("N", "O")  # for a molecule of air and of water: some programs know only chemical elements
 _LABELLED = ("wall", "axis")
 
 
 def extended_xyz(dataset: xr.Dataset) -> bytes:
     """Return the molecules of a run as extended XYZ, one frame after the other.
 
-    A molecule of air is called N and one of water O, since readers allow only names of elements. A molecule that is in
-    the liquid is left out of the frame; when it returns, it has the same ``id``. The second line of each frame has the
-    box as ``Lattice``, the ``Time`` in picoseconds, which sides are periodic, and the units.
+    A molecule of air is called N and one of water O, since some programs know only chemical elements. A molecule that
+    is in the liquid is left out of the frame; when it returns, it has the same ``id``. The second line of each frame
+    has the box as ``Lattice``, the ``Time`` in picoseconds, which sides are periodic, and the units.
 
     References
     ----------

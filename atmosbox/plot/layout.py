@@ -54,10 +54,10 @@ class TextMeasure:
     def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
         """Return text broken into lines of at most a width [pt].
 
-        Lines do not break within short brackets, after a minus sign or within what follows "=". A single word that is
-        wider stays whole.
+        Lines do not break within short brackets, after a minus sign, before °C or within what follows "=". A single
+        word that is wider stays whole.
         """
-        text = re.sub(r"\([^()]{1,24}\)|− |= .*", lambda part: part[0].replace(" ", _FIXED), text)
+        text = re.sub(r"\([^()]{1,24}\)|− | °C|= .*", lambda part: part[0].replace(" ", _FIXED), text)
         lines: list[str] = []
         for word in text.split(" "):
             longer = f"{lines[-1]} {word}" if lines else word

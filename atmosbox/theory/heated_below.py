@@ -24,6 +24,7 @@ Gass, D. M. (1971), J. Chem. Phys. 54, 1898, doi:10.1063/1.1675116 (discs by Ens
 Sone, Y. (2007), Molecular Gas Dynamics, 3.1.4 (jump and slip at a wall).
 """
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -224,13 +225,16 @@ def _integral(values: FloatArray, z: FloatArray) -> FloatArray:
     return np.concatenate([[0.0], np.cumsum(parts)])
 
 
+@functools.cache
+def _states_of_discs(diameter: float) -> tuple[FloatArray, FloatArray]:
+    """Return a table of the equation of state of discs: pressure over kT, and number density."""
+    density = np.linspace(0.0, 0.95, 4001) / packing_fraction_discs(1.0, diameter)
+    return gas_pressure_discs(density, 1.0, diameter), density
+
+
 def _density(gas: Gas, pressure: FloatArray, kT: FloatArray) -> FloatArray:
     """Return the number density at a pressure; of discs from a table of their equation of state."""
-    if not gas.planar:
-        return pressure / kT
-    unit = packing_fraction_discs(1.0, gas.diameter)
-    table = np.linspace(0.0, 0.95, 4001) / unit
-    return np.interp(pressure / kT, gas_pressure_discs(table, 1.0, gas.diameter), table)
+    return np.interp(pressure / kT, *_states_of_discs(gas.diameter)) if gas.planar else pressure / kT
 
 
 def _hydrostatic(

@@ -181,9 +181,9 @@ class Account(ABC):
         stored = zip(STORES, (*self.energy(), self.condensed_energy), strict=True)
         return dict(stored) | {name: getattr(self, held) for name, held in GIVEN.items()}
 
-    def ledger(self) -> float:
-        """Return the energy missing from the energy budget, relative to the largest of the energies in it [1]."""
-        return float(residual(self.budget(), self._start_energy))
+    def ledger(self, budget: dict[str, float | Array] | None = None) -> float:
+        """Return the energy missing from the budget (by default that of now), relative to its largest energy [1]."""
+        return float(residual(budget or self.budget(), self._start_energy))
 
     def _given(self) -> float:
         """Return all energy that has entered since the start [energy]."""

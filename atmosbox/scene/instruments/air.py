@@ -67,14 +67,15 @@ class Air:
         with np.errstate(invalid="ignore", divide="ignore"):
             wall_pressure = np.where(area > 0.0, impulse / (area * lasted), np.nan)
         chosen = slice(None) if self.barometer == "all" else slice(4, 5)
+        budget = parcel.budget()
         self._rows.append(
             {
                 "air_temperature": float(np.mean(self._kT)),
                 "air_pressure": float(impulse[chosen].sum() / (area[chosen].sum() * lasted or math.nan)),
                 "wall_pressure": wall_pressure,
-                **parcel.budget(),
+                **budget,
                 "gravity": parcel.gravity,
-                "ledger_residual": parcel.ledger(),
+                "ledger_residual": parcel.ledger(budget),
                 "collision_count": parcel.contacts,
                 "wall_hit_count": int(parcel.wall_hits.sum()),
                 "wall_temperature": parcel.wall_kT(),
