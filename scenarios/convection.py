@@ -16,7 +16,7 @@ temperature with more gravity: the air stays at rest).
 Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, which may
 rotate, in a box one cell deep. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water,
 radiation, the rotation of the earth. Exaggerated: the difference of the temperatures, 515 K in 13.5 km. The box is only
-about a hundred molecules high; its air is so viscous that with a real lapse rate it would stay at rest.
+about a hundred molecules high; its air is so viscous that a far smaller difference would not move it.
 """
 
 import functools
