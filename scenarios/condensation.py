@@ -70,7 +70,7 @@ class Settings(SceneSettings):
     humidity: float = setting(150.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
     area: float = setting(2.0, "1", "area of the mist, in faces of the box", low=0.01, high=100.0)
     drops: int = setting(0, "1", "number of nuclei of drops that can be seen; 0 for a mist", low=0, high=50)
-    drop_size: float = setting(6.0, "1", "how many times wider the drops are than real ones", low=1.0, high=20.0)
+    drop_size: float = setting(6.0, "1", "width of the drops, divided by that of real ones", low=1.0, high=20.0)
     duration: float = setting(40.0, "ns", "how long to watch", low=0.01, high=1e5)
 
     def check(self) -> None:

@@ -74,7 +74,7 @@ class Settings(SceneSettings):
     salt: int = setting(25, "1", "pairs of ions in each grain of salt", low=1, high=1000)
     water: int = setting(60, "1", "molecules of water in each drop at the start", low=0, high=5000)
     tension: float = setting(1.0, "1", "surface tension, divided by that of water", low=0.0, high=2.0)
-    drop_size: float = setting(4.0, "1", "how many times wider the drops are than real ones", low=1.0, high=10.0)
+    drop_size: float = setting(4.0, "1", "width of the drops, divided by that of real ones", low=1.0, high=10.0)
     duration: float = setting(150.0, "ns", "how long to watch", low=0.1, high=1e5)
 
     def check(self) -> None:
