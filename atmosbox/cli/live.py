@@ -34,7 +34,7 @@ def live(
 ) -> None:
     """Open a page in which a scene runs: change one thing at a time and see what happens.
 
-    It is the page that lab writes, with more settings: for a changed setting, the page asks atmosbox for a new start.
+    It is the page of `atmosbox lab`, with more settings: for a changed setting, the page asks atmosbox for a new start.
     Only this computer can open it, and the address has a token that is new each time.
     """
     if port is not None and not 1 <= port <= 65_535:

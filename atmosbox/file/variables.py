@@ -220,7 +220,7 @@ saturation_vapor_pressure | Pa | time: mean | saturation vapour pressure at the 
 relative_humidity | 1 | time: mean standard | relative humidity
 humidity_mixing_ratio | kg kg-1 | time: mean standard | mass of vapour per mass of dry air
 cloud_liquid_water_mixing_ratio | kg kg-1 | time: mean standard | mass of liquid water per mass of dry air
-largest_haze_mixing_ratio | kg kg-1 | time: mean | mixing ratio of liquid water above which haze is a cloud
+largest_haze_mixing_ratio | kg kg-1 | time: mean | mixing ratio of liquid water above which haze counts as cloud
 rain_mixing_ratio | kg kg-1 | time: mean | mass of water that has rained out so far per mass of dry air
 liquid_temperature | K | time: mean | temperature of the liquid water
 drop_area | m2 | time: mean | total area at which molecules hit drops
@@ -259,7 +259,7 @@ cell_pressure | Pa | time distance height: mean | pressure of the air in a cell,
 equation of state
 horizontal_wind | m s-1 | time distance height: mean | wind from left to right
 upward_wind | m s-1 | time distance height: mean standard=upward_air_velocity | upward wind
-wind_speed | m s-1 | time: mean | root mean square of the wind without thermal noise; negative where noise is larger
+wind_speed | m s-1 | time: mean | root mean square of the wind without thermal noise; below zero is chance
 roll_speed | m s-1 | time: mean | root of the sum of the squared amplitudes of all rolls, without noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
 roll_amplitude | m s-1 | time mode: mean | amplitude of the upward wind of rolls

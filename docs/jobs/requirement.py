@@ -168,7 +168,7 @@ def lifting() -> list[list[str]]:
     return [
         ["an ascent of an hour; here it takes nanoseconds",
          f"after {rounded(setup.duration * setup.scale.time * 1e9)} ns the parcel is "
-         f"{rounded(hurry)} K too warm, after an hour {rounded(hour)} K"],
+         f"{rounded(hurry)} K too warm, after an hour, with molecules of the true size, {rounded(hour)} K"],
         ["vibration", f"it would make air {rounded(vibrating)} K warmer at {top / 100.0:.0f} hPa"],
         ["attraction", f"it moves the adiabat of air by {rounded(attracted)} K"],
         ["the true size of molecules", f"as simulated, their excluded volume moves the adiabat by "
