@@ -143,6 +143,6 @@ def _cloud_base(dataset: xr.Dataset, ascent: MoistAscent, drawn: Parcels) -> lis
         return []
     error, expected = float(np.std(levels, ddof=1)), float(np.mean(levels))
     aside = f"{(expected - ascent.base) / 100.0:+.1f} hPa"
-    note = f"theory is {aside} from the condensation level: few molecules, noise, and vapour that condenses late"
+    note = f"theory is {aside} from the condensation level: extrapolation, few molecules, noise, late condensation"
     sizes, low, high = (base.pressure, error, expected, 0.0), ascent.top_pressure, ascent.pressure
     return [Headline("cloud_base", *sizes, note, "Pa", "hPa", "cloud base", low=low, high=high)]
