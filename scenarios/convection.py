@@ -405,7 +405,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     wind = overlapping_average(np.sign(late.wind_speed.values) * late.wind_speed.values**2)
     if still:
         found.append(Headline.of_mean("mean_square_wind", "mean square of the wind, less noise", wind, 0.0, "m2 s-2"))
-    elif float(wind.mean) > 3.0 * float(wind.standard_error):  # less may be chance
+    elif float(wind.mean) > 2.0 * float(wind.standard_error):  # less may be chance
         root = np.sqrt(wind.mean)
         speed = BlockAverage(root, 0.5 * wind.standard_error / root)
         found.append(Headline.of_mean("mean_wind_speed", "speed of the wind", speed, None, "m s-1"))
