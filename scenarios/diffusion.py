@@ -2,8 +2,8 @@
 
 One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall between
 them is taken away. Every molecule flies on as before; collisions turn its path into a random walk. Differences
-disappear, small-scale ones first. The last to disappear is that between left and right, as exp(-D (pi/L)^2 t). Nothing
-is lost, but the two gases do not separate again: the entropy of mixing grows to k ln 2 for each molecule.
+disappear, small-scale ones first. The last to disappear is that between left and right, as exp(-D (pi/L)^2 t). The two
+gases do not separate again: the entropy of mixing grows to k ln 2 for each molecule.
 
 By default the two gases differ by a label alone, as if half of the air were painted: this is self-diffusion. With
 mass_ratio the molecules on the right are heavier; 10 is the ratio of argon to helium.

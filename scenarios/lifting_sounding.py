@@ -2,8 +2,8 @@
 
 Air from the ground is lifted through a sounding: measured by a balloon or, by default, analytic. As long as the parcel
 is denser than the environment, it must be pushed. From the level of free convection up to the equilibrium level it is
-lighter, and would rise by itself. The area between the curves of both is the energy that buoyancy can give a kilogram
-of air.
+lighter, and would rise by itself. The area between the curves of their density temperatures is the energy that
+buoyancy can give a kilogram of air.
 
 Modelled: molecules of air and water (hard spheres if there are up to 5,000; with more, chance decides which collide);
 droplets too fine to draw, of one temperature, carried along by the air; the environment of the sounding, hydrostatic;

@@ -5,8 +5,8 @@ and sinks to the plain. On the way up its vapour condenses and releases heat; pa
 down the rest of the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over more kilometres
 than it had cooled at that rate. Without rain it would arrive as warm as it left.
 
-Prescribed: the curve e_s(T), the path, and how much cloud rains out and how fast. What emerges is where clouds begin
-and end, how much rain falls, and how warm the parcel arrives.
+Prescribed: the curve e_s(T), the path, and the law of the rain. What emerges is where clouds begin and end, how much
+rain falls, and how warm the parcel arrives.
 
 Modelled: molecules of air and water (hard spheres if there are up to 5,000; with more, chance decides which collide);
 droplets too fine to draw, of one temperature, carried along by the air; rain, which falls out of the cloud with its
