@@ -87,7 +87,7 @@ def corners(area):
 def test_cape_is_shaded_between_lfc_and_el_where_the_parcel_is_warmer_and_cin_below(run, drawings):
     axes = drawings["notes"].axes[0]
     cape, cin = areas(axes)
-    assert [text.get_text() for text in axes.get_legend().get_texts()[-2:]] == ["CAPE", "CIN"]
+    assert [text.get_text() for text in axes.get_legend().get_texts()[-2:]] == ["warmer", "colder"]
     assert corners(cape)[:, 1].min() >= 200.0 - 1e-6
     assert corners(cape)[:, 1].max() <= 820.0 + 1e-6
     assert corners(cin)[:, 1].min() >= 820.0 - 1e-6

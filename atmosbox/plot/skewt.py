@@ -1,4 +1,4 @@
-"""A parcel in its environment on the diagram that forecasters use: the skew-T of MetPy, with CAPE and CIN shaded."""
+"""A parcel in its environment on the skew-T of MetPy, shaded where the parcel is warmer or colder."""
 
 import math
 import warnings
@@ -96,7 +96,7 @@ def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
 def shade_energy(
     skewed: Any, panel: Panel, dataset: xr.Dataset, marks: Mapping[str, float], order: float
 ) -> list[Entry]:
-    """Shade CAPE and CIN between the levels LFC and EL [hPa], if there are any, and return their legend entries."""
+    """Shade where the parcel is warmer, between LFC and EL [hPa], and colder, below; return the legend entries."""
     roles = {line.role: line for line in reversed(panel.lines)}
     if "LFC" not in marks or not {"data", "environment"} <= set(roles):
         return []
@@ -106,13 +106,13 @@ def shade_energy(
     parcel, around = (_temperature(each, pressure) for each in curves)
     known = np.isfinite(parcel) & np.isfinite(around)
     entries: list[Entry] = []
-    for name, part, sign, shade in (
-        ("CAPE", known & (pressure <= lfc) & (pressure >= el), 1.0, skewed.shade_cape),
-        ("CIN", known & (pressure >= lfc), -1.0, skewed.shade_cin),
+    for name, label, part, sign, shade in (
+        ("CAPE", "warmer", known & (pressure <= lfc) & (pressure >= el), 1.0, skewed.shade_cape),
+        ("CIN", "colder", known & (pressure >= lfc), -1.0, skewed.shade_cin),
     ):
         if (sign * (parcel - around)[part] > 0.0).any():
             shade(pressure[part], around[part], parcel[part], zorder=order, **AREAS[name])
-            entries.append(((Patch(**AREAS[name]),), name))
+            entries.append(((Patch(**AREAS[name]),), label))
     return entries
 
 
@@ -156,11 +156,9 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
 def draw_skewt(
     figure: Figure, spot: SubplotSpec, panel: Panel, runs: Sequence[xr.Dataset], theme: Theme, curves: Curves
 ) -> tuple[Axes, list[Entry]]:
-    """Draw parcels and their environment as a skew-T; CAPE and CIN are shaded for one run alone.
+    """Draw parcels and their environment as a skew-T; for one run alone the areas between their curves are shaded.
 
-    The areas lie between the drawn curves of temperature. An area on MetPy's diagram is nearly, but not exactly,
-    proportional to an energy, and CAPE and CIN are computed from virtual temperatures: the areas show where the
-    energies come from, the headline numbers give their values.
+    CAPE and CIN are not these areas: they are computed from density temperatures.
     """
     marks, *others = (levels(run, panel) for run in runs)
     with warnings.catch_warnings(action="ignore"):  # a user can do nothing about warnings of MetPy in a new Python
