@@ -3,8 +3,8 @@
 Read in this order: `kernels` (functions that measure and draw; the functions that move molecules are in the engine);
 `box` (a box as the arrays that the kernels work on, `gauges` for its instruments, `start_plan` for how molecules
 start); `memory_image` (the layout of a module's memory, and the arguments of each kernel) and `wasm_module` (the
-modules, which ``tools/wasm.py`` makes); `stage`, `theory_table` and `plan` (data for the page), `starts` (boxes with
-other settings), `page_file` (the HTML file).
+modules, which ``tools/wasm.py`` makes); `stage`, `theory_table` and `plan` (data for the page), `page_file` (the
+HTML file, with the boxes of other settings that it offers).
 """
 
 from atmosbox.lab.page_file import save_lab

@@ -83,6 +83,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     unit = setup.scale.time / to_si(1.0, setup.time_unit)
     show_plan(stage.record["panels"], curves, unit)
     names, theory = [name for name, _, _ in readings], [name for table in curves for name in table["curves"]]
+    # how the scale of speeds follows the temperature
+    scale = {"swift": box.swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity}
     plan = {
         "told": {
             "stage": stage.record,
@@ -109,10 +111,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "time": unit,
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
-        # how the scale of speeds follows the temperature
-        "scale": None
-        if box.attracts
-        else {"swift": box.swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
+        "scale": None if box.attracts else scale,
         "ledger": Reading["LEDGER_RESIDUAL"].value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature

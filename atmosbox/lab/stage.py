@@ -46,15 +46,12 @@ def instrument_of(setup: Setup, kind: type) -> Any:
 def running_panels(prepared: Prepared) -> tuple[Panel, ...]:
     """Return the graphs of a scene without what only a whole run knows; an axis of time is linear."""
     panels = prepared.module.panels
-    found = panels(prepared.settings) if callable(panels) else panels
-    return tuple(running for panel in found if (running := _running(panel)) is not None)
-
-
-def _running(panel: Panel) -> Panel | None:
-    """Return a panel without curves that come from headlines, and with linear time; None if nothing is left."""
-    found = without_headlines(panel)
-    evenly = found is not None and found.lines and all(line.x == _TIME for line in found.lines)
-    return replace(found, x_scale="linear") if found is not None and evenly else found
+    found = map(without_headlines, panels(prepared.settings) if callable(panels) else panels)
+    return tuple(
+        replace(panel, x_scale="linear") if {line.x for line in panel.lines} == {_TIME} else panel
+        for panel in found
+        if panel is not None
+    )
 
 
 def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tuple[Stage, float]:
@@ -78,6 +75,8 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         neighbours=told.get("molecule_neighbour_count"),  # shown as colours, because speeds do not show drops
         right=setup.right,
     )
+    gas = 2.0 * parcel.energy()[0] / ((2.0 if parcel.planar else 3.0) * max(parcel.number, 1))
+    warmest = float(np.nanmax([*parcel.wall_kT(), gas]))  # kT of the gas and the walls
     fast = _swift(np.asarray(seen.mass, np.float64) / scale.mass)
     tell = functools.partial(declared, time_unit=setup.time_unit)
     made = stage(
@@ -85,7 +84,7 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         title=str(getattr(module, "title", prepared.scene)),
         story=lesson_of(module).story or (module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
         time_unit=setup.time_unit,
-        fastest=NEIGHBOURS if seen.neighbours is not None else fast * math.sqrt(_warmest(setup)) * scale.velocity,
+        fastest=NEIGHBOURS if seen.neighbours is not None else fast * math.sqrt(warmest) * scale.velocity,
         panels=[panel_record(each, tell) for each in panels if each.kind != "discs"],
     )
     made.record.update(
@@ -93,13 +92,6 @@ def lab_stage(prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> tu
         card=card_of(module.__doc__ or ""),
     )  # fmt: skip
     return made, fast * scale.velocity / math.sqrt(scale.temperature)
-
-
-def _warmest(setup: Setup) -> float:
-    """Return the highest temperature of gas and walls [reduced]."""
-    parcel = setup.parcel
-    gas = 2.0 * parcel.energy()[0] / ((2.0 if parcel.planar else 3.0) * max(parcel.number, 1))
-    return float(np.nanmax([*parcel.wall_kT(), gas]))
 
 
 def _swift(mass: Array) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -54,7 +53,7 @@ def short_run(prepared: Prepared) -> xr.Dataset:
     setup = build(prepared)
     parcel: Any = setup.parcel
     modes = parcel.arrays().modes
-    run = Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
+    run = Recording(prepared, setup, {})
     try:
         for _ in range(_FRAMES):
             run.advance(lambda passed: None)
@@ -323,8 +322,7 @@ def _ascent(tables: Sequence[Mapping[str, Any]], unit: float) -> dict[str, Array
 
 def _between(table: Mapping[str, Any], name: str, places: Array) -> Array:
     """Return values of a curve of a table, as the page interpolates them."""
-    found: Array = np.interp(places, np.array(table["grid"], float), np.array(table["curves"][name], float))
-    return found
+    return np.interp(places, np.array(table["grid"], float), np.array(table["curves"][name], float))
 
 
 def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float | None]:
