@@ -18,7 +18,6 @@ from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.wells.vicinity import new_vicinity
 from atmosbox.engine.wells.well_advance import Lists
-from atmosbox.engine.wells.well_events import WellGas
 from atmosbox.errors import SettingError
 from atmosbox.lab.gauges import average, crowd, gauges
 from atmosbox.lab.kernels.averaging import Average
@@ -147,13 +146,13 @@ def _without_molecules(box: LabBox) -> LabBox:
     """Return a box without its molecules, which the kernel ``start`` is to draw: the page gets smaller."""
     molecules = aligned_records(box.gas.molecules.size, MOLECULE)
     molecules[:] = box.gas.molecules
-    in_gas = molecules[: box.setup.parcel.number]  # after these follow the molecules of the liquid, and the drops
-    in_gas[["x", "y", "z", "vx", "vy", "vz"]] = 0.0
+    # after those of the gas follow the molecules of the liquid, and the drops
+    molecules[: box.setup.parcel.number][["x", "y", "z", "vx", "vy", "vz"]] = 0.0
     kinds = box.gas.kinds._replace(rotational_energy=np.zeros_like(box.gas.kinds.rotational_energy))
     return box._replace(gas=box.gas._replace(molecules=molecules, kinds=kinds))
 
 
-def _layout(arrays: Any) -> Layout:
+def _layout(arrays: Any) -> Any:
     """Return the layout of the cells before molecules are placed, with memory for other cells."""
     old, modes = arrays.layout, arrays.modes
     shape = old.shape.copy()
@@ -162,8 +161,7 @@ def _layout(arrays: Any) -> Layout:
     numbers = shape[NUMBER : NUMBER + 3]
     most = max(*numbers[:2], column.count.size) if column else int(_SPARE * max(numbers))
     edge = np.pad(old.edge, ((0, 0), (0, most + 3 - old.edge.shape[1])))
-    layout: Layout = old._replace(shape=shape, filled=old.filled.copy(), edge=edge, column=column)
-    return layout
+    return old._replace(shape=shape, filled=old.filled.copy(), edge=edge, column=column)
 
 
 def _gas(arrays: Any, layout: Layout) -> Gas:
@@ -195,16 +193,13 @@ def _ascent(ascent: Any) -> Any:
     return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment), start_energy=0.0)
 
 
-def well_gas(parcel: Any) -> WellGas:
+def well_gas(parcel: Any) -> Any:
     """Return the gas before the neighbours of its molecules are listed, with memory for longer lists."""
     number, gas = parcel.number, parcel.arrays().gas
     reach, stride = gas.vicinity.reach, gas.vicinity.stride
     vicinity = new_vicinity(parcel.length, parcel.periodic, number, reach, planar=parcel.planar)
     vicinity = vicinity._replace(entry=np.zeros(number * _LONGER * stride, np.uint32), stride=stride)
-    made: WellGas = gas._replace(
-        events=aligned_records(number, EVENT), calendar=new_calendar(number), vicinity=vicinity
-    )
-    return made
+    return gas._replace(events=aligned_records(number, EVENT), calendar=new_calendar(number), vicinity=vicinity)
 
 
 def lists(parcel: Any) -> Lists:

@@ -32,8 +32,6 @@ _HEAD = 256
 _SET = (".highest", ".gravity")
 """Numbers inside arguments that a page sets, besides whole arguments: the end of the scale of speeds, and gravity."""
 
-Works = Mapping[str, Mapping[str, Any]]
-
 
 class Image(NamedTuple):
     """The memory of a module before its first call.
@@ -83,7 +81,7 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
     return sorted(found, key=lambda piece: next(k for k, at in enumerate(turn) if piece[0] <= at < piece[1]))
 
 
-def image(works: Works) -> Image:
+def image(works: Mapping[str, Mapping[str, Any]]) -> Image:
     """Return the memory image for these kernels: their arguments, by the names of both.
 
     >>> made = image({"scale": {"values": np.arange(3.0), "by": 2}})

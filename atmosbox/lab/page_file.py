@@ -85,9 +85,7 @@ def _news(own: Any, first: Any) -> Any:
     return own
 
 
-def lab_starts(
-    prepared: Prepared, most: int, progress: Callable[[float, str], None] = lambda share, word: None
-) -> tuple[list[Start], str]:
+def lab_starts(prepared: Prepared, most: int, progress: Callable[[float, str], None]) -> tuple[list[Start], str]:
     """Return the starts of a page, that with its own settings first, and the name of the module that all starts use.
 
     The other starts have half or twice as many molecules, the presets of the scene, smaller or larger molecules, then
@@ -95,15 +93,14 @@ def lab_starts(
     at most ``most`` bytes; the first start is always included, and is the only one if this is 0. ``progress`` is called
     with the share of the page that is filled and the name of the present step.
 
-    >>> found, _ = lab_starts(prepare("elastic-collisions", {"molecules": 10}), 33_000)
+    >>> found, _ = lab_starts(prepare("elastic-collisions", {"molecules": 10}), 33_000, lambda share, word: None)
     >>> [start.key for start in found[:2]]
     ['molecules=10, filling=15 %, seed=1', 'molecules=5, filling=15 %, seed=1']
     """
-    settings = prepared.settings
+    changed = prepared.settings.changed()
     first, memory, box = lab_plan(prepared)
     offered = _offered(prepared, seeded=first["seeded"])
-    own = {name: values[0] for name, values in offered.items()}
-    first["start"] = own
+    first["start"] = own = {name: values[0] for name, values in offered.items()}
     made = [Start(_key(own), first, _content(memory))]
     room = most - len(module_bytes(box.module, prepared.scene)) - len(gzip.compress(made[0].stored(), 9))
     presets: list[str] = []
@@ -116,9 +113,7 @@ def lab_starts(
             continue
         progress(1.0 - room / whole, "making other starts")
         try:
-            plan, memory, its_box = lab_plan(
-                prepare(prepared.scene, settings.changed() | values, engine=prepared.engine)
-            )
+            plan, memory, its_box = lab_plan(prepare(prepared.scene, changed | values, engine=prepared.engine))
         except AtmosboxError:  # not every scene can run with these settings
             continue
         plan["start"] = own if title else own | {name: str(values[name]) for name in own if name in values}

@@ -16,12 +16,11 @@ from atmosbox.lab.gauges import bins_of
 from atmosbox.lab.kernels.knobs import can_set_gravity
 from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.memory_image import BASE, Image, arguments, image
-from atmosbox.lab.stage import COLDER, drawing, instrument_of, running_panels
+from atmosbox.lab.stage import COLDER, instrument_of, lab_lesson, running_panels
 from atmosbox.lab.theory_table import short_run, show_plan, tables
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.page import ROUND
 from atmosbox.page.controls import gauges, knob_controls
-from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared, plain
 from atmosbox.scene.conversion import declared_unit, to_si
 from atmosbox.scene.instruments import MOMENTS, Air, Clusters, Leaving, MoistLift, Nuclei
@@ -83,6 +82,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     unit = setup.scale.time / to_si(1.0, setup.time_unit)
     show_plan(stage.record["panels"], curves, unit)
     names, theory = [name for name, _, _ in readings], [name for table in curves for name in table["curves"]]
+    units = {name: declared(name, setup.time_unit).unit for name in names + theory if known(name.partition("[")[0])}
     # how the scale of speeds follows the temperature
     scale = {"swift": box.swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity}
     plan = {
@@ -90,7 +90,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
             "stage": stage.record,
             "controls": knob_controls(found),
             "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
-            "lesson": _lesson(prepared, {*names, *theory}, setup, stage.record["panels"]),
+            "lesson": lab_lesson(prepared, {*names, *theory}, setup, stage.record["panels"]),
         },
         "base": BASE,
         "size": memory.size,
@@ -122,9 +122,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "tables": curves,
         "planned": [_AT_REST] if wind else _planned_alone(box),
         "knobs": numbers,
-        "units": {
-            name: declared(name, setup.time_unit).unit for name in (*names, *theory) if known(name.partition("[")[0])
-        },
+        "units": units,
         "command": _command(prepared),
         "link": link_start(prepared),
         "seeded": box.seeded,
@@ -223,23 +221,6 @@ def _factor(name: str, box: LabBox) -> float:
     return own[name] if name in own else units[known(name).units]  # type: ignore[union-attr]
 
 
-def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return question and task of the scene, without a task whose variables the page does not have; no presets."""
-    lesson = lesson_of(prepared.module)
-    task, predict = lesson.task, dict(lesson.predict or {})
-    found: dict[str, Any] = {"presets": [], "predict": predict or None, "task": None}
-    if "draw" in predict:
-        predict["draw"] = drawing(predict["draw"], panels, setup)
-    if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
-        return found
-    reach = []
-    for goal in task["reach"]:
-        by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
-        scaled = {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
-        reach.append(goal | scaled)
-    return found | {"task": {**task, "reach": reach}}
-
-
 def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
     gauges, layers = box.gauges, box.gauges.virial.size
@@ -311,8 +292,7 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
         if knob.wall is not None:
             told["walls"] = {"first": knob.wall, "last": knob.wall + 1}
         if knob.places is not None:
-            heights, shares = knob.places
-            told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}
+            told |= {"grid": knob.places[0], "curves": {"to": knob.places[1]}, "rounds": True}
         numbers[knob.name] = told
     return kept, numbers
 
@@ -321,5 +301,4 @@ def _command(prepared: Prepared) -> str:
     """Return the command that starts the same run, with the seed at its end."""
     sets = (Setting(name, value) for name, value in prepared.settings.changed().items() if name != "seed")
     engine = [Option("engine", prepared.unusual_engine)] if prepared.unusual_engine else []
-    seed = Option("seed", prepared.settings.seed)
-    return on_command_line(Command("run", (prepared.scene, *sets, *engine, seed)))
+    return on_command_line(Command("run", (prepared.scene, *sets, *engine, Option("seed", prepared.settings.seed))))

@@ -88,9 +88,8 @@ class Server(socketserver.ThreadingTCPServer):
         if port is None:
             said = f"{PORT} to {PORT + _TRIES - 1}"
             raise SettingError("port", said, "are all in use", "end another program, or give a free ", Option("port"))
-        raise SettingError(
-            "port", port, "is in use or not allowed", "give another, or leave ", Option("port"), " out for a free one"
-        ) from problem
+        remedy = "give another, or leave ", Option("port"), " out for a free one"
+        raise SettingError("port", port, "is in use or not allowed", *remedy) from problem
 
     @property
     def address(self) -> str:

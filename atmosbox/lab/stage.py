@@ -1,4 +1,4 @@
-"""What a page shows of a box that runs, and gets once: its stage, its graphs, and the graph on which a class draws."""
+"""What a page shows of a box that runs, and gets once: its stage, its graphs, and its lesson."""
 
 from __future__ import annotations
 
@@ -102,15 +102,31 @@ def _swift(mass: Array) -> float:
     >>> _swift(np.full(5, 4.0)), round(_swift(np.array([1.0, 9.0])), 2)
     (1.5, 2.76)
     """
-    known = mass[np.isfinite(mass)]
-    if not known.size:
+    if not mass.size:
         return _FASTEST
-    inverse = np.geomspace(1.0 / known.max(), 1.0 / known.min(), _STEPS)
-    share = [float(np.exp(-0.5 * _FASTEST**2 * each * known).mean()) for each in inverse]
+    inverse = np.geomspace(1.0 / mass.max(), 1.0 / mass.min(), _STEPS)
+    share = [float(np.exp(-0.5 * _FASTEST**2 * each * mass).mean()) for each in inverse]
     return _FASTEST * math.sqrt(np.interp(-math.exp(-0.5 * _FASTEST**2), np.negative(share), inverse))
 
 
-def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setup) -> dict[str, Any] | None:
+def lab_lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return question and task of the scene, without a task whose variables the page does not have; no presets."""
+    lesson = lesson_of(prepared.module)
+    task, predict = lesson.task, dict(lesson.predict or {})
+    found: dict[str, Any] = {"presets": [], "predict": predict or None, "task": None}
+    if "draw" in predict:
+        predict["draw"] = _drawing(predict["draw"], panels, setup)
+    if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
+        return found
+    reach = []
+    for goal in task["reach"]:
+        by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
+        scaled = {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
+        reach.append(goal | scaled)
+    return found | {"task": {**task, "reach": reach}}
+
+
+def _drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setup) -> dict[str, Any] | None:
     """Return how a class draws the variable that it predicts; None if no graph shows it from an end known beforehand.
 
     That is the number of the graph, the label of the curve where there are several, and for the variable and what it
@@ -130,12 +146,12 @@ def drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setu
         measured, along = (
             line[each] | {"unit": declared(line[each]["name"], setup.time_unit).unit} for each in (axis, other)
         )
-        first, last = _shown(ends[along["name"]], along)
+        first, last = shown(ends[along["name"]], along)
         spaced = np.geomspace if panel[other]["log"] else np.linspace
         return {
             "graph": number,
             "label": line["label"] if len(lines) > 1 else "",
-            "measured": measured | {"range": plain(_shown(span, measured))},
+            "measured": measured | {"range": plain(shown(span, measured))},
             "along": along | {"places": plain(spaced(first, last, _HANDLES))},
         }
     return None
@@ -157,6 +173,6 @@ def _ends(panels: list[dict[str, Any]], setup: Setup) -> dict[str, list[float]]:
     return ends
 
 
-def _shown(values: Iterable[float], way: Mapping[str, Any]) -> list[float]:
+def shown(values: Iterable[float], way: Mapping[str, Any]) -> list[float]:
     """Return values in the unit in which a panel shows them."""
     return [value * way["factor"] + way["offset"] for value in values]

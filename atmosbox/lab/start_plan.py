@@ -48,7 +48,6 @@ def start_of(parcel: Any, layout: Any) -> Start:
     kT = np.broadcast_to(0.0 if equal else np.asarray(moving.kT, np.float64), (n,))
     exact = not equal and moving.exact and n > 1 and kT.mean() > 0.0
     centre = np.array(places.centre, np.float64).reshape(-1, 3)
-    has_layers = arrays.modes.gravity and arrays.modes.rows
     warmest = float(np.nanmax([0.0, *parcel.wall_kT()]))  # of the walls
     return Start(
         parts=np.array([DRAWN.index(part.draws) for part in declared.parts], np.int64),
@@ -68,7 +67,7 @@ def start_of(parcel: Any, layout: Any) -> Start:
         degrees=degrees,
         spread=spread,
         at=_first_gauges(parcel),
-        layout=layout if has_layers else 0,
+        layout=layout if arrays.modes.gravity and arrays.modes.rows else 0,
         cleared=Cleared(centre, np.array(places.reach, np.float64), float(sides[0])) if arrays.modes.drops else 0,
         velocity=np.zeros((n, 3)),
         key=np.zeros(3 * n + 1),

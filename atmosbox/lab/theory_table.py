@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError, Setting, SettingError
-from atmosbox.lab.stage import instrument_of
+from atmosbox.lab.stage import instrument_of, shown
 from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.page.panel import plain
 from atmosbox.scene.conversion import to_si
@@ -172,7 +172,7 @@ def _table(along: str, grid: ArrayLike, curves: dict[str, Any], **more: Any) -> 
     return {"along": along, "grid": plain(grid), "curves": curves, **more}
 
 
-def pressures(lift: Lift | MoistLift, seconds: Array) -> Array:
+def pressures(lift: Lift | MoistLift, seconds: Any) -> Array:
     """Return the pressure of the environment at moments of the planned ascent [s]."""
     return np.array([lift.environment.pressure(t) for t in seconds.tolist()])
 
@@ -207,11 +207,8 @@ def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
 
 def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
     """Return the energy distributions of molecules that leave and that stay, by the temperature of the liquid."""
-    grid, ones = np.linspace(_COLDEST, _WARMEST, _WARMTHS), np.ones(found.sizes[_TIME])
-    rows = [
-        _told(prepared, found, liquid_temperature=(_TIME, kelvin * ones), evaporation_rate=(_TIME, ones))
-        for kelvin in grid
-    ]
+    grid, ones = np.linspace(_COLDEST, _WARMEST, _WARMTHS), found.elapsed_time * 0.0 + 1.0
+    rows = [_told(prepared, found, liquid_temperature=kelvin * ones, evaporation_rate=ones) for kelvin in grid]
     names = [name for name, values in rows[0].items() if np.shape(values) == found.energy.shape]
     curves = {name: [plain(row[name]) for row in rows] for name in names}
     return _table("temperature_of_those_that_left", grid, curves)
@@ -291,7 +288,7 @@ def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, An
     for panel in panels:
         panel["planned"] = {"x": [], "y": []}
         for line in panel["lines"]:
-            points = {axis: _points(line[axis], way) for axis in ("x", "y")}
+            points = {axis: plain(shown(way.get(line[axis]["name"], ()), line[axis]), 5) for axis in ("x", "y")}
             if not (points["x"] and points["y"]):
                 continue
             for axis, values in points.items():
@@ -320,11 +317,6 @@ def _ascent(tables: Sequence[Mapping[str, Any]], unit: float) -> dict[str, Array
     return {name: values for name, values in way.items() if np.isfinite(values).all()}
 
 
-def _between(table: Mapping[str, Any], name: str, places: Array) -> Array:
+def _between(table: Mapping[str, Any], name: str, places: Array) -> Any:
     """Return values of a curve of a table, as the page interpolates them."""
     return np.interp(places, np.array(table["grid"], float), np.array(table["curves"][name], float))
-
-
-def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float | None]:
-    """Return the values of a variable along the ascent, in the unit of its axis."""
-    return plain(way.get(axis["name"], np.zeros(0)) * axis["factor"] + axis["offset"], 5)
