@@ -170,21 +170,20 @@ def _readings(box: LabBox, begun: xr.Dataset) -> list[tuple[str, int, float]]:
     """Return the readings that are shown: name, index, and factor to SI units or to the unit of the page."""
     kinds, knobs = [Air, *map(type, box.setup.instruments)], {knob.name for knob in box.setup.knobs}
     names = [name for kind, measured in MEASURED.items() if kind in kinds for name in measured]
+    names += ["gravity"] if "gravity" in knobs else []
     absent = _absent_readings(box, begun)
-    shown = [name for name in (*names, *({"gravity"} & knobs)) if name not in absent]
-    found = [(name, Reading[name.upper()].value, _factor(name, box)) for name in shown]
+    found = [(name, Reading[name.upper()].value, _factor(name, box)) for name in names if name not in absent]
     warm = np.isfinite(box.setup.parcel.wall_kT())
     if box.modes.phases and "temperature" in knobs:
         warm[slice(*box.warmed)] = True
     first, factor = Reading["WALL_TEMPERATURE"].value, _factor("wall_temperature", box)
-    return found + [
-        (f"wall_temperature[{WALL_NAMES[wall]}]", first + int(wall), factor) for wall in np.flatnonzero(warm)
-    ]
+    walls = [(f"wall_temperature[{name}]", first + wall, factor) for wall, name in enumerate(WALL_NAMES) if warm[wall]]
+    return found + walls
 
 
 def _absent_readings(box: LabBox, begun: xr.Dataset) -> set[str]:
     """Return the variables that its instruments measure in other scenes, but not in this one."""
-    measured = {"air_pressure": np.isfinite(begun.air_pressure.values).any()}  # on a wall
+    measured = {"air_pressure": np.isfinite(begun.air_pressure.values).any()}  # needs a wall
     if box.modes.phases:
         moisture, water = box.book.moisture, box.gauges.water
         measured |= {"rain_mixing_ratio": moisture.reservoir.rain > 0.0, "parcel_buoyancy": water.level.size > 0}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -53,7 +54,7 @@ def short_run(prepared: Prepared) -> xr.Dataset:
     setup = build(prepared)
     parcel: Any = setup.parcel
     modes = parcel.arrays().modes
-    run = Recording(prepared, setup, {})
+    run = Recording(prepared, setup, {"atmosbox_parameters": json.dumps(prepared.parameters)})
     try:
         for _ in range(_FRAMES):
             run.advance(lambda passed: None)
