@@ -32,8 +32,6 @@ _HEAD = 256
 _SET = (".highest", ".gravity")
 """Numbers inside arguments that a page sets, besides whole arguments: the end of the scale of speeds, and gravity."""
 
-Works = Mapping[str, Mapping[str, Any]]
-
 
 class Image(NamedTuple):
     """The memory of a module before its first call.
@@ -54,13 +52,9 @@ class Image(NamedTuple):
 def parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
     """Yield the parts of an argument that numba passes, in order: kind, value, and path of the name."""
     if isinstance(value, np.ndarray):
-        yield "word", 0, name
-        yield "word", 0, name
-        yield "word", value.size, name
-        yield "word", value.itemsize, name
+        yield from (("word", number, name) for number in (0, 0, value.size, value.itemsize))
         yield "array", value, name
-        for number in (*value.shape, *value.strides):
-            yield "word", number, name
+        yield from (("word", number, name) for number in (*value.shape, *value.strides))
     elif isinstance(value, tuple | dict):
         names = value if isinstance(value, dict) else getattr(value, "_fields", range(len(value)))
         for field, part in zip(names, value.values() if isinstance(value, dict) else value, strict=True):
@@ -69,10 +63,6 @@ def parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
         yield "number", float(value), name
     else:
         yield "word", int(value), name
-
-
-def _address(array: NDArray[Any]) -> int:
-    return int(array.__array_interface__["data"][0])
 
 
 def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
@@ -87,11 +77,11 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
             found[-1] = found[-1][0], max(found[-1][1], high)
         else:
             found.append((low, high))
-    turn = [_address(each) for each in arrays if each.size]
+    turn = [each.ctypes.data for each in arrays if each.size]
     return sorted(found, key=lambda piece: next(k for k, at in enumerate(turn) if piece[0] <= at < piece[1]))
 
 
-def image(works: Works) -> Image:
+def image(works: Mapping[str, Mapping[str, Any]]) -> Image:
     """Return the memory image for these kernels: their arguments, by the names of both.
 
     >>> made = image({"scale": {"values": np.arange(3.0), "by": 2}})
@@ -99,22 +89,19 @@ def image(works: Works) -> Image:
     (0, {'by': 131448}, {'values': (131072, 3, 'float64')})
     """
     known = {path: part for given in works.values() for kind, part, path in parts(given, "") if kind == "array"}
-    held = _pieces_of_memory([*known.values()])
     place: dict[tuple[int, int], int] = {}
     at = BASE
-    for low, high in held:
+    for low, high in _pieces_of_memory([*known.values()]):
         at = -(-at // _LINE) * _LINE
         place[low, high] = at
         at += high - low
 
     def where(array: NDArray[Any]) -> int:
-        low = _address(array)
-        return next((to + low - first for (first, last), to in place.items() if first <= low < last), BASE)
+        at = array.ctypes.data
+        return next((to + at - low for (low, high), to in place.items() if low <= at < high), BASE)
 
-    table: dict[str, tuple[int, int, str]] = {}
-    for name, array in known.items():
-        kind = "uint8" if array.dtype.names else str(array.dtype)
-        table[name] = where(array), array.nbytes if array.dtype.names else array.size, kind
+    seen = {name: array.view(np.uint8) if array.dtype.names else array for name, array in known.items()}
+    table = {name: (where(array), array.size, str(array.dtype)) for name, array in seen.items()}
     stored = ((to, ctypes.string_at(low, high - low)) for (low, high), to in place.items())
     pieces = [(to, content) for to, content in stored if any(content)]
     blocks: dict[str, int] = {}

@@ -12,25 +12,25 @@ from atmosbox.engine.core.walls import WALL_NAMES
 from atmosbox.errors import Command, Option, Setting, on_command_line
 from atmosbox.file.variables import known
 from atmosbox.lab.box import LabBox, lab_box
-from atmosbox.lab.drawing import drawing
+from atmosbox.lab.gauges import bins_of
 from atmosbox.lab.kernels.knobs import can_set_gravity
 from atmosbox.lab.kernels.readings import MEASURED, Reading
 from atmosbox.lab.memory_image import BASE, Image, arguments, image
-from atmosbox.lab.moist_box import bins_of
-from atmosbox.lab.stage import COLDER, instrument_of, running_panels
+from atmosbox.lab.stage import COLDER, instrument_of, lab_lesson, running_panels
 from atmosbox.lab.theory_table import short_run, show_plan, tables
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.page import ROUND
 from atmosbox.page.controls import gauges, knob_controls
-from atmosbox.page.lesson import lesson_of
 from atmosbox.page.panel import declared, plain
 from atmosbox.scene.conversion import declared_unit, to_si
-from atmosbox.scene.instruments import MOMENTS, Air, Leaving, MoistLift, Nuclei
+from atmosbox.scene.instruments import MOMENTS, Air, Clusters, Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared, link_start
 from atmosbox.theory import WATER_MASS_RATIO
 from atmosbox.theory.constants import BOLTZMANN, STANDARD_GRAVITY
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from atmosbox.scene.panels import Panel
     from atmosbox.scene.setup import Setup
 
@@ -77,20 +77,20 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
     state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
     found, numbers = _knobs(box)
     begun = short_run(prepared)
-    readings = _readings(box, set(prepared.module.theory(begun, prepared.settings)) if box.attracts else set())
-    if not np.isfinite(begun.air_pressure.values).any():  # no wall on which pressure is measured
-        readings = [each for each in readings if each[0] != "air_pressure"]
-    profiles = _profiles(box)
+    readings, profiles, wind = _readings(box, begun), _profiles(box), _wind(box)
     curves = [] if box.attracts else _drawn(tables(prepared, setup, begun), panels, profiles)
     unit = setup.scale.time / to_si(1.0, setup.time_unit)
     show_plan(stage.record["panels"], curves, unit)
     names, theory = [name for name, _, _ in readings], [name for table in curves for name in table["curves"]]
+    units = {name: declared(name, setup.time_unit).unit for name in names + theory if known(name.partition("[")[0])}
+    # how the scale of speeds follows the temperature
+    scale = {"swift": box.swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity}
     plan = {
         "told": {
             "stage": stage.record,
             "controls": knob_controls(found),
             "settle": 0.0 if setup.ends else setup.settle * setup.frame * unit,
-            "lesson": _lesson(prepared, {*names, *theory}, setup, stage.record["panels"]),
+            "lesson": lab_lesson(prepared, {*names, *theory}, setup, stage.record["panels"]),
         },
         "base": BASE,
         "size": memory.size,
@@ -107,27 +107,22 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, LabBox]:
         "ends": setup.ends,
         # whether a graph draws one series against another, so that all their values are sent each time
         "whole": setup.ends or any({line.x, line.y} <= {*names} - {_TIME} for each in panels for line in each.lines),
-        "rate": _rate(setup, _SOON if setup.ends or _has_wind(box) else _WHOLE),
+        "rate": _rate(setup, _SOON if setup.ends or wind else _WHOLE),
         "time": unit,
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
-        # how the scale of speeds follows the temperature
-        "scale": None
-        if box.attracts
-        else {"swift": box.swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
+        "scale": None if box.attracts else scale,
         "ledger": Reading["LEDGER_RESIDUAL"].value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.running.size else gauges(prepared.settings, names),
         "profiles": profiles,
-        "wind": _wind(box) if _has_wind(box) else None,
+        "wind": wind,
         "fixed": _fixed(box),
         "tables": curves,
-        "planned": [_AT_REST] if _has_wind(box) else _planned_alone(box),
+        "planned": [_AT_REST] if wind else _planned_alone(box),
         "knobs": numbers,
-        "units": {
-            name: declared(name, setup.time_unit).unit for name in (*names, *theory) if known(name.partition("[")[0])
-        },
+        "units": units,
         "command": _command(prepared),
         "link": link_start(prepared),
         "seeded": box.seeded,
@@ -161,8 +156,7 @@ def _drawn(
 
     The other profiles are rounded to `_FIGURES`. Series are not rounded, because they are saved too.
     """
-    drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error)}
-    drawn -= {name for name, *_ in measured}
+    drawn = {name for panel in panels for name in panel.variables} - {name for name, *_ in measured}
     for table in found:
         table["curves"] = {
             name: [plain(row, _FIGURES) for row in rows] if isinstance(rows[0], list) else rows
@@ -172,31 +166,33 @@ def _drawn(
     return found
 
 
-def _readings(box: LabBox, theory: set[str]) -> list[tuple[str, int, float]]:
+def _readings(box: LabBox, begun: xr.Dataset) -> list[tuple[str, int, float]]:
     """Return the readings that are shown: name, index, and factor to SI units or to the unit of the page."""
-    setup, parcel = box.setup, box.setup.parcel
-    kinds = [Air, *(type(each) for each in setup.instruments)]
+    kinds, knobs = [Air, *map(type, box.setup.instruments)], {knob.name for knob in box.setup.knobs}
     names = [name for kind, measured in MEASURED.items() if kind in kinds for name in measured]
-    absent = _absent_readings(box) if box.modes.phases else set()
-    absent |= {name for name in names if name.endswith("_theory")} - theory
+    names += ["gravity"] if "gravity" in knobs else []
+    absent = _absent_readings(box, begun)
     found = [(name, Reading[name.upper()].value, _factor(name, box)) for name in names if name not in absent]
-    if any(knob.name == "gravity" for knob in setup.knobs):
-        found.append(("gravity", Reading["GRAVITY"].value, _factor("gravity", box)))
-    warm = np.isfinite(parcel.wall_kT())
-    if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
+    warm = np.isfinite(box.setup.parcel.wall_kT())
+    if box.modes.phases and "temperature" in knobs:
         warm[slice(*box.warmed)] = True
     first, factor = Reading["WALL_TEMPERATURE"].value, _factor("wall_temperature", box)
     walls = [(f"wall_temperature[{name}]", first + wall, factor) for wall, name in enumerate(WALL_NAMES) if warm[wall]]
     return found + walls
 
 
-def _absent_readings(box: LabBox) -> set[str]:
-    """Return the variables of the water that its instruments measure in other scenes, but not in this one."""
-    moisture, water = box.book.moisture, box.gauges.water
-    measured = {"rain_mixing_ratio": moisture.reservoir.rain > 0.0, "parcel_buoyancy": water.level.size > 0}
+def _absent_readings(box: LabBox, begun: xr.Dataset) -> set[str]:
+    """Return the variables that its instruments measure in other scenes, but not in this one."""
+    measured = {"air_pressure": np.isfinite(begun.air_pressure.values).any()}  # needs a wall
+    if box.modes.phases:
+        moisture, water = box.book.moisture, box.gauges.water
+        measured |= {"rain_mixing_ratio": moisture.reservoir.rain > 0.0, "parcel_buoyancy": water.level.size > 0}
     if box.modes.drops:
         salted = moisture.drops.solute > 0.0
         measured |= {"salted_drop_radius": salted.any(), "pure_drop_radius": not salted.all()}
+    if box.attracts:
+        theory = box.prepared.module.theory(begun, box.prepared.settings)
+        measured |= {name: name in theory for name in MEASURED[Clusters] if name.endswith("_theory")}
     return {name for name, is_so in measured.items() if not is_so}
 
 
@@ -224,28 +220,12 @@ def _factor(name: str, box: LabBox) -> float:
     return own[name] if name in own else units[known(name).units]  # type: ignore[union-attr]
 
 
-def _lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return question and task of the scene, without a task whose variables the page does not have; no presets."""
-    lesson = lesson_of(prepared.module)
-    task, predict = lesson.task, dict(lesson.predict or {})
-    found: dict[str, Any] = {"presets": [], "predict": predict or None, "task": None}
-    if "draw" in predict:
-        predict["draw"] = drawing(predict["draw"], panels, setup)
-    if task is None or not series.issuperset(goal["name"] for goal in task["reach"]):
-        return found
-    reach = []
-    for goal in task["reach"]:
-        by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
-        scaled = {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
-        reach.append(goal | scaled)
-    return found | {"task": {**task, "reach": reach}}
-
-
 def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
     """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
     gauges, layers = box.gauges, box.gauges.virial.size
     water: Any = gauges.water
-    shown = ("number_density", "layer_temperature", "layer_pressure", "layer_wind")[: 4 if _has_wind(box) else 3]
+    wind: Any = gauges.flow and gauges.flow.high.size
+    shown = ("number_density", "layer_temperature", "layer_pressure", "layer_wind")[: 4 if wind else 3]
     across = gauges.mixture.mean.size // len(MOMENTS)
     rows = [("speed_probability_density", "speeds", 0, gauges.speeds.size)]
     rows += [(name, "layers", place * layers, layers) for place, name in enumerate(shown)]
@@ -257,22 +237,17 @@ def _profiles(box: LabBox) -> list[tuple[str, str, int, int, float]]:
         for end, part in (("", "mean"), ("_se", "error"))
         if count
     ]
-    if _has_wind(box):
+    if wind:
         found.append(("layer_temperature_adiabatic", "gauges.flow.adiabat", 0, layers, box.setup.scale.temperature))
     return found
 
 
-def _wind(box: LabBox) -> dict[str, Any]:
+def _wind(box: LabBox) -> dict[str, Any] | None:
     """Return the cells of the wind that is drawn, its factor to m/s, and the least speed of the longest arrow [m/s]."""
-    flow: Any = box.gauges.flow
-    speed = float(box.setup.scale.velocity)
+    flow, speed = box.gauges.flow, float(box.setup.scale.velocity)
+    if not (flow and flow.high.size):
+        return None
     return {"rows": flow.high.size, "columns": flow.wave.shape[1], "factor": speed, "least": _SLOWEST * speed}
-
-
-def _has_wind(box: LabBox) -> bool:
-    """Return whether the wind is measured."""
-    flow: Any = box.gauges.flow
-    return bool(flow and flow.high.size)
 
 
 def _fixed(box: LabBox) -> dict[str, Any]:
@@ -316,8 +291,7 @@ def _knobs(box: LabBox) -> tuple[list[Any], dict[str, Any]]:
         if knob.wall is not None:
             told["walls"] = {"first": knob.wall, "last": knob.wall + 1}
         if knob.places is not None:
-            heights, shares = knob.places
-            told |= {"grid": heights, "curves": {"to": shares}, "rounds": True}
+            told |= {"grid": knob.places[0], "curves": {"to": knob.places[1]}, "rounds": True}
         numbers[knob.name] = told
     return kept, numbers
 
@@ -326,5 +300,4 @@ def _command(prepared: Prepared) -> str:
     """Return the command that starts the same run, with the seed at its end."""
     sets = (Setting(name, value) for name, value in prepared.settings.changed().items() if name != "seed")
     engine = [Option("engine", prepared.unusual_engine)] if prepared.unusual_engine else []
-    seed = Option("seed", prepared.settings.seed)
-    return on_command_line(Command("run", (prepared.scene, *sets, *engine, seed)))
+    return on_command_line(Command("run", (prepared.scene, *sets, *engine, Option("seed", prepared.settings.seed))))

@@ -20,8 +20,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from atmosbox.errors import AtmosboxError, Command, Given, Option, Setting, SettingError, on_command_line
-from atmosbox.lab.page_file import lab_data
-from atmosbox.lab.starts import served_start
+from atmosbox.lab.page_file import lab_data, served_start
 from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.page import lab_page
 from atmosbox.page.lesson import lesson_of
@@ -54,9 +53,8 @@ def allowed(host: str | None, origin: str | None) -> bool:
         named = name == "localhost" or bool(ipaddress.ip_address(name))
     except ValueError:
         named = False
-    return named and (
-        origin is None or origin.casefold() in (f"http://{host}".casefold(), f"https://{host}".casefold())
-    )
+    own = (f"http://{host}".casefold(), f"https://{host}".casefold())
+    return named and (origin is None or origin.casefold() in own)
 
 
 class Server(socketserver.ThreadingTCPServer):
@@ -90,9 +88,8 @@ class Server(socketserver.ThreadingTCPServer):
         if port is None:
             said = f"{PORT} to {PORT + _TRIES - 1}"
             raise SettingError("port", said, "are all in use", "end another program, or give a free ", Option("port"))
-        raise SettingError(
-            "port", port, "is in use or not allowed", "give another, or leave ", Option("port"), " out for a free one"
-        ) from problem
+        remedy = "give another, or leave ", Option("port"), " out for a free one"
+        raise SettingError("port", port, "is in use or not allowed", *remedy) from problem
 
     @property
     def address(self) -> str:
@@ -136,10 +133,9 @@ class _Answer(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Send the page or a plan, or refuse the request."""
-        hosts, origins = (self.headers.get_all(name, []) for name in ("Host", "Origin"))
-        if len(hosts) > 1 or len(origins) > 1:
+        if any(len(self.headers.get_all(name, [])) > 1 for name in ("Host", "Origin")):
             return self._send(400, "A request has one Host and one Origin.")
-        if not allowed(*(found[0] if found else None for found in (hosts, origins))):
+        if not allowed(self.headers["Host"], self.headers["Origin"]):
             return self._send(403, "This page is for this computer alone.")
         address = urlsplit(self.path)
         asked = parse_qs(address.query, keep_blank_values=True)
@@ -150,9 +146,7 @@ class _Answer(BaseHTTPRequestHandler):
         if address.path != "/plan":
             return self._send(404, "There is one page here, at /.")
         try:
-            settings = json.loads(asked["settings"][0])
-            if not isinstance(settings, dict):
-                raise TypeError
+            settings = {**json.loads(asked["settings"][0])}
         except (LookupError, TypeError, ValueError, RecursionError):
             return self._send(400, "A plan needs its settings as JSON.")
         try:
@@ -167,15 +161,12 @@ class _Answer(BaseHTTPRequestHandler):
     def _send(self, status: int, text: str, kind: str = "text/plain") -> None:
         content = text.encode("utf-8")
         self.send_response_only(status)
-        for name, value in (
-            ("Content-Type", f"{kind}; charset=utf-8"),
-            ("Content-Length", str(len(content))),
-            ("Cache-Control", "no-store"),
-            ("X-Frame-Options", "DENY"),
-            ("Referrer-Policy", "no-referrer"),
-            ("X-Content-Type-Options", "nosniff"),
-        ):
-            self.send_header(name, value)
+        self.send_header("Content-Type", f"{kind}; charset=utf-8")
+        self.send_header("Content-Length", str(len(content)))
+        self.send_header("Cache-Control", "no-store")
+        self.send_header("X-Frame-Options", "DENY")
+        self.send_header("Referrer-Policy", "no-referrer")
+        self.send_header("X-Content-Type-Options", "nosniff")
         self.end_headers()
         self.wfile.write(content)
 

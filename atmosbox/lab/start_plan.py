@@ -48,7 +48,7 @@ def start_of(parcel: Any, layout: Any) -> Start:
     kT = np.broadcast_to(0.0 if equal else np.asarray(moving.kT, np.float64), (n,))
     exact = not equal and moving.exact and n > 1 and kT.mean() > 0.0
     centre = np.array(places.centre, np.float64).reshape(-1, 3)
-    has_layers = arrays.modes.gravity and arrays.modes.rows
+    warmest = float(np.nanmax([0.0, *parcel.wall_kT()]))  # of the walls
     return Start(
         parts=np.array([DRAWN.index(part.draws) for part in declared.parts], np.int64),
         numbered=NUMBERED.index(places.numbered),
@@ -59,7 +59,7 @@ def start_of(parcel: Any, layout: Any) -> Start:
         rotating=0.5 * float(turning.kT * degrees.sum()) if turning.exact else 0.0,
         warmth=float(turning.kT),
         condensed=float(parcel.condensed_energy),
-        warm=_warm(parcel),
+        warm=math.sqrt(8.0 * warmest / arrays.substance.mass) if arrays.modes.phases else 0.0,
         spheres=spheres,
         bins=bins_of(spheres),
         factor=np.sqrt(kT / mass),
@@ -67,7 +67,7 @@ def start_of(parcel: Any, layout: Any) -> Start:
         degrees=degrees,
         spread=spread,
         at=_first_gauges(parcel),
-        layout=layout if has_layers else 0,
+        layout=layout if arrays.modes.gravity and arrays.modes.rows else 0,
         cleared=Cleared(centre, np.array(places.reach, np.float64), float(sides[0])) if arrays.modes.drops else 0,
         velocity=np.zeros((n, 3)),
         key=np.zeros(3 * n + 1),
@@ -85,19 +85,10 @@ def _spread(parcel: Any, sides: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([spacing, max([*fastest, math.sqrt(parcel.gravity * spacing)])])
 
 
-def _warm(parcel: Any) -> float:
-    """Return a speed of molecules that leave the warmest wall; 0 in a box without liquid: see `MoistParcelSet`."""
-    arrays = parcel.arrays()
-    warmest = float(np.nanmax([0.0, *parcel.wall_kT()]))
-    return math.sqrt(8.0 * warmest / arrays.substance.mass) if arrays.modes.phases else 0.0
-
-
 def _first_gauges(parcel: Any) -> Any:
     """Return the data of the gas that the law of the piston needs at the start, without energy; 0 without ascent."""
     if not parcel.arrays().modes.ascends:
         return 0
-    open_height = parcel.ceiling - float(parcel.diameter.mean())
-    return Gauges(
-        0.0, parcel.number, parcel.degrees_of_freedom, 2.0 if parcel.planar else 3.0, 0.0, 0.0, parcel.open_density,
-        open_height,
-    )  # fmt: skip
+    dimensions, open_height = 2.0 if parcel.planar else 3.0, parcel.ceiling - float(parcel.diameter.mean())
+    freedom, density = parcel.degrees_of_freedom, parcel.open_density
+    return Gauges(0.0, parcel.number, freedom, dimensions, 0.0, 0.0, density, open_height)

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError, Setting, SettingError
-from atmosbox.lab.stage import instrument_of
+from atmosbox.lab.stage import instrument_of, shown
 from atmosbox.lab.wasm_module import elsewhere
 from atmosbox.page.panel import plain
 from atmosbox.scene.conversion import to_si
@@ -103,29 +103,23 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
 
 def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
     """Return the curves of theory as functions of time, at each frame of a run and long after."""
-    told = prepared.module.theory(found, prepared.settings)
+    told = _told(prepared, found)
     if any(_is_series(values, found) and np.ptp(values) > 0.0 for values in told.values()):
         run = np.arange(1, setup.frames + 1) * float(found.elapsed_time[0])
         times = np.concatenate([run, run[-1] * np.geomspace(1.0, _LONG, _POINTS)[1:]])
         found = found.drop_dims("elapsed_time").assign_coords(elapsed_time=times)
-        told = prepared.module.theory(found, prepared.settings)
+        told = _told(prepared, found)
     series = {name: plain(values) for name, values in told.items() if _is_series(values, found)}
     rest = {name: [plain(values)] for name, values in told.items() if name not in series}
-    return [
-        {"along": "elapsed_time", "grid": plain(found.elapsed_time.values), "curves": series},
-        {"along": "elapsed_time", "grid": [0.0], "curves": rest},
-    ]
+    return [_table(_TIME, found.elapsed_time.values, series), _table(_TIME, 0.0, rest)]
 
 
 def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
     """Return the curves of theory as functions of the temperature of the walls."""
     grid, walls = _range(knob), found.wall_temperature
-    rows = [
-        prepared.module.theory(found.assign(wall_temperature=walls.where(walls.isnull(), kelvin)), prepared.settings)
-        for kelvin in grid.tolist()
-    ]
+    rows = [_told(prepared, found, wall_temperature=walls.where(walls.isnull(), kelvin)) for kelvin in grid.tolist()]
     curves = {name: [_last(row[name], found) for row in rows] for name in rows[0]}
-    return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
+    return _table("wall_temperature[z_low]", grid, curves)
 
 
 def _moist_walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
@@ -133,16 +127,13 @@ def _moist_walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str,
     kelvin = np.append(_range(knob), [] if knob.leave is None else [math.nan])
     here = found.isel(elapsed_time=np.zeros(kelvin.size, int))
     walls = np.repeat(kelvin[:, None], here.sizes["wall"], axis=1)
-    here = here.assign(wall_temperature=(("elapsed_time", "wall"), walls))
-    told = dict(prepared.module.theory(here, prepared.settings))
+    told = _told(prepared, here, wall_temperature=((_TIME, "wall"), walls))
     told.pop("liquid_saturation_vapor_pressure", None)  # belongs to the pool, whose temperature is measured
     series = {name: plain(values) for name, values in told.items() if _is_series(values, here)}
     curves = {name: values[:_POINTS] for name, values in series.items()}
-    table = {"along": "wall_temperature[x_low]", "grid": plain(kelvin[:_POINTS]), "curves": curves}
-    if knob.leave is not None:
-        table["otherwise"] = {name: values[-1] for name, values in series.items()}
-        table["times"] = {"condensation_rate_theory": "pool_open_share"}
-    return table
+    left = {name: values[-1] for name, values in series.items()}
+    more = {"otherwise": left, "times": {"condensation_rate_theory": "pool_open_share"}}
+    return _table("wall_temperature[x_low]", kelvin[:_POINTS], curves, **({} if knob.leave is None else more))
 
 
 def _range(knob: Knob) -> Array:
@@ -161,23 +152,30 @@ def _column(prepared: Prepared, found: xr.Dataset, knob: Knob, pull: Knob) -> di
     grid = np.geomspace(cold / most, warm / least, _POINTS)
 
     def told(ratio: float, gravity: float) -> dict[str, Any]:
-        here = found.assign(gravity=0.0 * found.elapsed_time + gravity)
-        here["wall_temperature"] = found.wall_temperature.where(found.wall_temperature.isnull(), ratio * gravity)
-        return dict(prepared.module.theory(here, prepared.settings))
+        walls = found.wall_temperature.where(found.wall_temperature.isnull(), ratio * gravity)
+        return _told(prepared, found, gravity=0.0 * found.elapsed_time + gravity, wall_temperature=walls)
 
     rows = [told(ratio, usual) for ratio in grid.tolist()]
     double = told(grid[0], 2.0 * usual)
     grows = {name for name, values in rows[0].items() if np.allclose(double[name], 2.0 * np.asarray(values))}
-    per = {name: usual if name in grows else 1.0 for name in rows[0]}
-    curves = {name: [_last(row[name] / each, found) for row in rows] for name, each in per.items()}
+    curves = {name: [_last(row[name] / (usual if name in grows else 1.0), found) for row in rows] for name in rows[0]}
     times = dict.fromkeys(sorted(grows), "gravity")
-    return {
-        "along": "wall_temperature[z_low]",
-        "over": "gravity",
-        "grid": plain(grid),
-        "curves": curves,
-        "times": times,
-    }
+    return _table("wall_temperature[z_low]", grid, curves, over="gravity", times=times)
+
+
+def _told(prepared: Prepared, found: xr.Dataset, **changed: Any) -> dict[str, Any]:
+    """Return the curves of theory for these measurements, with some variables changed."""
+    return dict(prepared.module.theory(found.assign(changed), prepared.settings))
+
+
+def _table(along: str, grid: ArrayLike, curves: dict[str, Any], **more: Any) -> dict[str, Any]:
+    """Return a table of curves with the values of the variable that it is a function of."""
+    return {"along": along, "grid": plain(grid), "curves": curves, **more}
+
+
+def pressures(lift: Lift | MoistLift, seconds: Any) -> Array:
+    """Return the pressure of the environment at moments of the planned ascent [s]."""
+    return np.array([lift.environment.pressure(t) for t in seconds.tolist()])
 
 
 def _last(values: Any, found: xr.Dataset) -> Any:
@@ -197,45 +195,34 @@ def _way(setup: Setup, lift: Lift | MoistLift, moments: Array) -> dict[str, Any]
         "environment_temperature": plain([around.temperature(t) for t in seconds]),
         "environment_pressure": plain([around.pressure(t) for t in seconds]),
     }
-    return {"along": "moment", "grid": plain(moments), "curves": curves}
+    return _table("moment", moments, curves)
 
 
 def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
     """Return the temperature of the adiabat at each pressure that the parcel may reach."""
-    around = lift.environment
-    ends = [around.pressure(t * setup.scale.time) for t in np.linspace(0.0, setup.duration, _WAY)]
-    pressures = plain(np.geomspace(0.8 * min(ends), 1.25 * max(ends), _WAY))
-    curve = plain([around.adiabat(p) for p in pressures if p is not None])
-    return {"along": "parcel_pressure", "grid": pressures, "curves": {"adiabat_temperature": curve}}
+    ends = pressures(lift, np.linspace(0.0, setup.duration, _WAY) * setup.scale.time)
+    levels = np.array(plain(np.geomspace(0.8 * ends.min(), 1.25 * ends.max(), _WAY)), np.float64)
+    curve = plain([lift.environment.adiabat(p) for p in levels.tolist()])
+    return _table("parcel_pressure", levels, {"adiabat_temperature": curve})
 
 
 def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
     """Return the energy distributions of molecules that leave and that stay, by the temperature of the liquid."""
-    grid = np.linspace(_COLDEST, _WARMEST, _WARMTHS)
-    ones, rows = np.ones(found.sizes["elapsed_time"]), []
-    for kelvin in grid:
-        here = found.assign(liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones))
-        rows.append(prepared.module.theory(here, prepared.settings))
+    grid, ones = np.linspace(_COLDEST, _WARMEST, _WARMTHS), found.elapsed_time * 0.0 + 1.0
+    rows = [_told(prepared, found, liquid_temperature=kelvin * ones, evaporation_rate=ones) for kelvin in grid]
     names = [name for name, values in rows[0].items() if np.shape(values) == found.energy.shape]
     curves = {name: [plain(row[name]) for row in rows] for name in names}
-    return {"along": "temperature_of_those_that_left", "grid": plain(grid), "curves": curves}
+    return _table("temperature_of_those_that_left", grid, curves)
 
 
 def _moist_way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -> list[dict[str, Any]]:
     """Return the environment along the ascent, and the curves of theory by the pressure of the parcel."""
     frames = (np.arange(setup.frames) + 0.5) * setup.frame
     moments = np.union1d(np.linspace(0.0, setup.duration, _WAY), frames)
-    outside, middle = (
-        np.array([lift.environment.pressure(t) for t in (each * setup.scale.time).tolist()])
-        for each in (moments, frames)
-    )
+    outside, middle = (pressures(lift, each * setup.scale.time) for each in (moments, frames))
     way = _way(setup, lift, moments)
-    spread = {
-        "along": "moment",
-        "grid": plain(frames),
-        "curves": {"parcel_temperature_se": plain(lift.scatter(middle))},
-        "times": {"parcel_temperature_se": "parcel_temperature"},
-    }
+    scatter, times = plain(lift.scatter(middle)), {"parcel_temperature_se": "parcel_temperature"}
+    tables = [way, _table("moment", frames, {"parcel_temperature_se": scatter}, times=times)]
     rains = "rain_mixing_ratio" in found
     # if it rains, theory is slow, and the only curve by pressure alone is straight
     levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, _WAY // 2 if rains else 2 * _WAY - 1)
@@ -246,14 +233,13 @@ def _moist_way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Data
         told = theory_at(prepared, outside)
         way["curves"] |= {name: plain(values) for name, values in told.items() if name.startswith("environment_")}
     known = [name for name in by_pressure if not name.startswith(("environment_", "parcel_", "relative_humidity"))]
-    tables = [way, spread]
     if rains:  # the water that has rained out, and that which is left, depend on the ascent
         planned = theory_at(prepared, middle, rains=True)
-        along = {name: plain(values) for name, values in planned.items() if "mixing_ratio" in name}
-        tables.append({"along": "moment", "grid": plain(frames), "curves": along})
+        water = {name: plain(values) for name, values in planned.items() if "mixing_ratio" in name}
+        tables.append(_table("moment", frames, water))
         known = ["dry_air_adiabat_temperature"]
     falling = {name: plain(by_pressure[name][::-1]) for name in known}
-    return [*tables, {"along": "parcel_pressure", "grid": plain(levels[::-1]), "curves": falling}]
+    return [*tables, _table("parcel_pressure", levels[::-1], falling)]
 
 
 def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict[str, Any]:
@@ -263,12 +249,11 @@ def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict
     """
     import xarray as xr  # loads slowly
 
-    ones = np.ones(pressure.size)
-    series = {"parcel_pressure": pressure, "environment_pressure": pressure, "parcel_temperature": 280.0 * ones}
-    series |= {"humidity_mixing_ratio": 0.0 * ones, "cloud_liquid_water_mixing_ratio": 0.0 * ones}
-    series |= {"rain_mixing_ratio": 0.0 * ones} if rains else {}
-    asked = xr.Dataset({name: ("elapsed_time", values) for name, values in series.items()})
-    told = prepared.module.theory(asked, prepared.settings)
+    water = ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio", "rain_mixing_ratio")[: 3 if rains else 2]
+    none = 0.0 * pressure
+    series = {"parcel_pressure": pressure, "environment_pressure": pressure, "parcel_temperature": 280.0 + none}
+    series |= dict.fromkeys(water, none)
+    told = _told(prepared, xr.Dataset({name: (_TIME, values) for name, values in series.items()}))
     return {name: values for name, values in told.items() if np.shape(values) == pressure.shape}
 
 
@@ -284,9 +269,8 @@ def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
     """
     bent = np.abs(np.diff(curve, 2))
     usual = np.median(bent[bent > _STRAIGHT * bent.max()])
-    is_near = np.zeros(levels.size - 1, np.bool_)
-    for k in np.flatnonzero(bent > _KINK * usual):
-        is_near[k : k + 2] = True
+    is_sharp = bent > _KINK * usual
+    is_near = np.append(is_sharp, False) | np.append(False, is_sharp)
     pieces = [
         np.linspace(low, high, times + 1)[:-1] if near else [low]
         for low, high, near in zip(levels[:-1], levels[1:], is_near, strict=True)
@@ -305,7 +289,7 @@ def show_plan(panels: Sequence[dict[str, Any]], tables: Sequence[Mapping[str, An
     for panel in panels:
         panel["planned"] = {"x": [], "y": []}
         for line in panel["lines"]:
-            points = {axis: _points(line[axis], way) for axis in ("x", "y")}
+            points = {axis: plain(shown(way.get(line[axis]["name"], ()), line[axis]), 5) for axis in ("x", "y")}
             if not (points["x"] and points["y"]):
                 continue
             for axis, values in points.items():
@@ -334,12 +318,6 @@ def _ascent(tables: Sequence[Mapping[str, Any]], unit: float) -> dict[str, Array
     return {name: values for name, values in way.items() if np.isfinite(values).all()}
 
 
-def _between(table: Mapping[str, Any], name: str, places: Array) -> Array:
+def _between(table: Mapping[str, Any], name: str, places: Array) -> Any:
     """Return values of a curve of a table, as the page interpolates them."""
-    found: Array = np.interp(places, np.array(table["grid"], float), np.array(table["curves"][name], float))
-    return found
-
-
-def _points(axis: Mapping[str, Any], way: Mapping[str, Array]) -> list[float | None]:
-    """Return the values of a variable along the ascent, in the unit of its axis."""
-    return plain(way.get(axis["name"], np.zeros(0)) * axis["factor"] + axis["offset"], 5)
+    return np.interp(places, np.array(table["grid"], float), np.array(table["curves"][name], float))

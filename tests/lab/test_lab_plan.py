@@ -8,10 +8,9 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.lab.box import lab_box
 from atmosbox.lab.memory_image import parts
-from atmosbox.lab.page_file import lab_text
+from atmosbox.lab.page_file import lab_text, served_start
 from atmosbox.lab.plan import lab_plan
 from atmosbox.lab.start_plan import is_drawn, start_of
-from atmosbox.lab.starts import served_start
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.wasm_module import SCENES, module_bytes
 from atmosbox.page.lesson import lesson_of

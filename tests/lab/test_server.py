@@ -16,8 +16,8 @@ import pytest
 
 from atmosbox.cli.request import Sought, gather, with_fewer_molecules
 from atmosbox.errors import SettingError
+from atmosbox.lab.page_file import AS_WRITTEN
 from atmosbox.lab.server import PORT, Server
-from atmosbox.lab.starts import AS_WRITTEN
 from atmosbox.simulation.preparation import build, prepare
 from tests.lab.test_browser import Lab, advance, state_of
 
