@@ -24,9 +24,8 @@ class Crowd(namedtuple("Crowd", "members wells drop size liquid virial gas_law f
     vapour), and the size of the drop that it represents; ``liquid`` the density of the liquid in drops [1/length^3].
     ``virial : (1,)`` is the virial at the end of the last frame [energy]; ``gas_law : (2, 4)`` the coefficients of p /
     n k T - 1 of a gas: rows for the powers 1 and 2 of its density, columns for the powers 0 to 3 of e^(strength / kT) -
-    1. ``full_depth :
-    (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over the full one;
-    ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
+    1. ``full_depth : (kind, kind)`` is the full depth of the wells [energy], ``strength : (1,)`` their present depth
+    over the full one; ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
     """
 
 
@@ -34,9 +33,8 @@ class Crowd(namedtuple("Crowd", "members wells drop size liquid virial gas_law f
 def energy_of_wells(wells):
     """Return the potential energy of all pairs that are in each other's well [energy]."""
     total = 0.0
-    for one in range(wells.depth.shape[0]):
-        for two in range(wells.depth.shape[1]):
-            total += wells.depth[one, two] * wells.number[one, two]
+    for pair in np.ndindex(wells.depth.shape):
+        total += wells.depth[pair] * wells.number[pair]
     return -total
 
 

@@ -22,8 +22,8 @@ from atmosbox.lab.kernels.starting import starting
 
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
-    found = knobs(modes, wells=wells) | gauging(modes, wells=wells) | {"begin_averages_anew": begin_averages_anew}
-    found |= {"start": starting(modes, wells=wells), "look": picture(modes, wells=wells)}
+    found = knobs(modes, wells=wells) | {"start": starting(modes, wells=wells), "look": picture(modes, wells=wells)}
+    found |= {"begin_averages_anew": begin_averages_anew} | gauging(modes, wells=wells)
     loops = moist_loop if modes.phases else dry_loop
     pass_time, settle = well_advance.advancing(modes) if wells else advancing(modes, loops)
 

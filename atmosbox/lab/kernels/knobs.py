@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.schedule import interpolate
 from atmosbox.engine.core.state import Modes
@@ -80,10 +82,9 @@ def knobs(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]
     @kernel
     def attract(gas, book, crowd, gauges, strength):
         """Change the depth of all wells: see `AttractingParcelSet.set_strength`."""
-        depth, work = gas.wells.depth, -energy_of_wells(gas.wells)
-        for one in range(depth.shape[0]):
-            for two in range(depth.shape[1]):
-                depth[one, two] = strength * crowd.full_depth[one, two]
+        work = -energy_of_wells(gas.wells)
+        for pair in np.ndindex(crowd.full_depth.shape):
+            gas.wells.depth[pair] = strength * crowd.full_depth[pair]
         work += energy_of_wells(gas.wells)
         crowd.work[0] += work
         gauges.before[ENERGY] += work
