@@ -143,7 +143,7 @@ def gauging(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
         return 0
 
     @kernel
-    def begin(gas, book, gauges, crowd):
+    def begin(gas, ascent, book, gauges, crowd):
         """Begin to measure."""
         sum_up(gas, book.now[0], gauges, modes)
         _begin_frame(gas, gas.walls.epoch[0] + book.now[0], gauges)
@@ -161,7 +161,7 @@ def gauging(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
         return 0
 
     @kernel
-    def end_frame(gas, ascent, book, layout, gauges, crowd):
+    def end_frame(gas, ascent, book, gauges, layout, crowd):
         """Take the readings at the end of a frame, which is the moment of its last sample, and complete its means."""
         reading, now, samples = gauges.reading, book.now[0], max(gauges.samples[0], 1.0)
         time = gas.walls.epoch[0] + now
