@@ -137,7 +137,8 @@ def sample_water(gas, ascent, book, gauges, modes):
 def condensed_energy(gas, book, modes):
     """Return the energy of the liquid, of its vapour's binding, of the rain and of drops [energy]."""
     wet, reservoir = book.moisture, book.moisture.reservoir
-    energy = reservoir.binding_energy * (wet.vapours - reservoir.top[0]) + np.sum(reservoir.energy)
+    thermal, rained = reservoir.energy[0], reservoir.energy[1]
+    energy = reservoir.binding_energy * (wet.vapours - reservoir.top[0]) + (thermal + rained)
     if modes.drops > 0:
         for k in range(wet.drops.record.size):
             if wet.drops.alive[k] == 1:
