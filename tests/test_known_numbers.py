@@ -101,14 +101,14 @@ def page_and_python():
     call = kernels(box.modes)
     assert call["start"](box.gas, box.ascent, box.book, box.start, prepared.settings.seed) == 0
     call["place"](box.gas, box.book, box.layout)
-    call["begin"](box.gas, box.ascent, box.book, box.gauges)
+    call["begin"](box.gas, box.ascent, box.book, box.gauges, box.crowd)
     recording, (air,) = Recording(prepared, setup, {}), (each for each in setup.instruments if isinstance(each, Air))
     pages, frames = [], 4
     for frame in range(frames):
         for sample in range(1, setup.samples + 1):
             call["pass_time"](box.gas, box.ascent, box.book, box.layout, setup.moment(frame, sample), 10**9)
             call["sample"](box.gas, box.ascent, box.book, box.gauges)
-        call["end_frame"](box.gas, box.ascent, box.book, box.gauges)
+        call["end_frame"](box.gas, box.ascent, box.book, box.gauges, box.layout, box.crowd)
         pages.append([float(each) for each in box.gauges.reading[:3]])
         recording.advance(lambda now: None)
     rows = [[row["air_temperature"], row["air_pressure"]] for row in air._rows]

@@ -2,6 +2,6 @@
 
 Nothing here is called from Python; ``tools/wasm.py`` compiles it to WebAssembly. Read `kernel_table` first, which
 lists the kernels that a page calls, then `readings`, the variables that it measures, `sums`, what is summed over the
-molecules, `gauging`, `averaging` and `picture`; `attracting` and `clustering` replace some of them for molecules that
-attract each other.
+molecules, `gauging`, `averaging` and `picture`; `hygrometer`, `flowing`, `two_gases` and `clustering` measure what only
+some scenes show.
 """

@@ -15,52 +15,38 @@ BLOCKS = 40
 FEWEST = 4
 """Smallest number of blocks for a standard error."""
 HELD, FRAMES, LENGTH = range(3)
-FILLED, ALL = BLOCKS, BLOCKS + 1
+ALL = BLOCKS + 1
 
 
 class Average(namedtuple("Average", "blocks state mean error")):
     """The blocks of some quantities.
 
-    ``blocks : (BLOCKS + 2, number)`` are sums over the frames of each block; the last row but one is the block that is
-    being filled, and the last the sum of all frames. ``state : (4,)`` is the number of full blocks, the number of
+    ``blocks : (BLOCKS + 2, number)`` are sums over the frames of each full block, then of the block that is being
+    filled; the last row is the sum of all frames. ``state : (4,)`` is the number of full blocks, the number of
     frames in the block that is being filled, the number of frames in a full block, and that number at the start.
     ``mean, error : (number of averages,)`` are the average and its standard error, NaN while there are too few blocks.
     """
 
 
 @kernel
-def forget(average):
-    """Forget all frames."""
-    average.state[HELD] = 0
-    average.state[FRAMES] = 0
-    average.state[LENGTH] = average.state[3]
-    average.blocks[:] = 0.0
-    average.mean[:] = math.nan
-    average.error[:] = math.nan
-
-
-@kernel
 def _gather(values, average):
     """Add the values of a frame to the blocks."""
     state, blocks = average.state, average.blocks
-    state[FRAMES] += 1
-    is_full = state[FRAMES] == state[LENGTH]
-    merges = is_full and state[HELD] == BLOCKS
     for k in range(values.size):
-        blocks[FILLED, k] += values[k]
+        blocks[state[HELD], k] += values[k]
         blocks[ALL, k] += values[k]
-        if merges:
-            for block in range(BLOCKS // 2):
-                blocks[block, k] = blocks[2 * block, k] + blocks[2 * block + 1, k]
-        elif is_full:
-            blocks[state[HELD], k] = blocks[FILLED, k]
-            blocks[FILLED, k] = 0.0
-    if merges:
-        state[HELD] = BLOCKS // 2
-        state[LENGTH] *= 2
-    elif is_full:
+    state[FRAMES] += 1
+    if state[FRAMES] == state[LENGTH] and state[HELD] < BLOCKS:
         state[HELD] += 1
         state[FRAMES] = 0
+        blocks[state[HELD]] = 0.0
+    elif state[FRAMES] == state[LENGTH]:  # no row is left
+        for k in range(values.size):
+            for block in range(BLOCKS // 2):
+                blocks[block, k] = blocks[2 * block, k] + blocks[2 * block + 1, k]
+            blocks[BLOCKS // 2, k] = blocks[BLOCKS, k]
+        state[HELD] = BLOCKS // 2
+        state[LENGTH] *= 2
 
 
 @kernel
@@ -105,6 +91,10 @@ def update(values, average, layers, box):
 @kernel
 def begin_averages_anew(speeds, layers):
     """Begin the averages of many frames again."""
-    forget(speeds)
-    forget(layers)
+    for average in (speeds, layers):
+        average.state[HELD] = average.state[FRAMES] = 0
+        average.state[LENGTH] = average.state[3]
+        average.blocks[:] = 0.0
+        average.mean[:] = math.nan
+        average.error[:] = math.nan
     return 0

@@ -1,10 +1,7 @@
 """Wind and rolls of air that turns over, and the adiabat: see `instruments.Flow`."""
 
-import functools
 import math
 from collections import namedtuple
-from collections.abc import Callable
-from typing import Any
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
@@ -34,75 +31,66 @@ def can_flow(modes: Modes) -> bool:
     return not (modes.rotation or modes.mixed or modes.piston or modes.phases)
 
 
-@functools.cache
-def flowing(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``begin``, ``sample`` and ``end`` of one set of modes."""
+@kernel
+def begin_wind(flow):
+    """Begin to measure."""
+    flow.sums[:] = 0.0
+    flow.frames[0] = 0.0
+    flow.wind[:] = 0.0
 
-    @kernel
-    def begin(flow):
-        """Begin to measure."""
-        flow.sums[:] = 0.0
-        flow.frames[0] = 0.0
-        flow.wind[:] = 0.0
 
-    @kernel
-    def sample(gas, gauges):
-        """Add the wind of a sample, whose sums over the parts of the layers are known: see `instruments.Flow`."""
-        flow, columns, mass = gauges.flow, gauges.flow.wave.shape[1], gas.kinds.table[0].mass
-        if columns == 0:
-            return
-        molecules = gauges.whole.sums[0, Sum.NUMBER]
-        wind = rolls = 0.0
-        flow.column[:] = 0.0
-        for part in range(flow.high.size * columns):
-            sums = gauges.parts.sums[part]
-            number, along, up = sums[Sum.NUMBER], sums[Sum.X] / mass, sums[Sum.Z] / mass
-            flow.sums[0, part] += number
-            flow.sums[1, part] += along
-            flow.sums[2, part] += up
-            if number > 1.0:
-                wind += (along * along + up * up - 2.0 * sums[Sum.KINETIC] / mass) / (number - 1.0)
-            size = 2.0 * flow.high[part // columns] / molecules
-            flow.column[0, part % columns] += size * up
-            flow.column[1, part % columns] += size * size * sums[Sum.UPRIGHT]
-        for k in range(flow.wave.shape[0]):
-            amplitude = alone = 0.0
-            for column in range(columns):
-                amplitude += flow.wave[k, column] * flow.column[0, column]
-                alone += flow.wave[k, column] ** 2 * flow.column[1, column]
-            rolls += amplitude * amplitude - alone
-        gauges.means[Reading.WIND_SPEED] += wind / molecules
-        gauges.means[Reading.ROLL_SPEED] += rolls
+@kernel
+def sample_wind(gas, gauges):
+    """Add the wind of a sample, whose sums over the parts of the layers are known: see `instruments.Flow`."""
+    flow, columns, mass = gauges.flow, gauges.flow.wave.shape[1], gas.kinds.table[0].mass
+    if columns == 0:
+        return
+    molecules = gauges.whole.sums[0, Sum.NUMBER]
+    wind = rolls = 0.0
+    flow.column[:] = 0.0
+    for part in range(flow.high.size * columns):
+        sums = gauges.parts.sums[part]
+        number, along, up = sums[Sum.NUMBER], sums[Sum.X] / mass, sums[Sum.Z] / mass
+        flow.sums[0, part] += number
+        flow.sums[1, part] += along
+        flow.sums[2, part] += up
+        if number > 1.0:
+            wind += (along * along + up * up - 2.0 * sums[Sum.KINETIC] / mass) / (number - 1.0)
+        size = 2.0 * flow.high[part // columns] / molecules
+        flow.column[0, part % columns] += size * up
+        flow.column[1, part % columns] += size * size * sums[Sum.UPRIGHT]
+    for k in range(flow.wave.shape[0]):
+        amplitude = alone = 0.0
+        for column in range(columns):
+            amplitude += flow.wave[k, column] * flow.column[0, column]
+            alone += flow.wave[k, column] ** 2 * flow.column[1, column]
+        rolls += amplitude * amplitude - alone
+    gauges.means[Reading.WIND_SPEED] += wind / molecules
+    gauges.means[Reading.ROLL_SPEED] += rolls
 
-    @kernel
-    def mean_along(layer, flow):
-        """Return the mean wind along x in the middle half of a layer."""
-        columns = flow.wave.shape[1]
-        first, last = columns // 4, max(columns - columns // 4, columns // 4 + 1)
+
+@kernel
+def end_wind(gauges):
+    """Finish the wind of a frame, and read its speed, that of rolls, and the wind in the middle half of each layer."""
+    flow, sums, reading = gauges.flow, gauges.flow.sums, gauges.reading
+    if flow.high.size == 0:
+        return
+    for speed in (Reading.WIND_SPEED, Reading.ROLL_SPEED):  # their squares, negative where noise has made them so
+        reading[speed] = math.copysign(math.sqrt(abs(reading[speed])), reading[speed])
+    flow.frames[0] += 1.0
+    fresh = max(_FRESH, 1.0 / flow.frames[0])
+    columns, layers = flow.wave.shape[1], flow.high.size
+    first, last = columns // 4, max(columns - columns // 4, columns // 4 + 1)
+    for part in range(layers * columns):
+        if sums[0, part] > 0.0:
+            for axis in range(2):
+                flow.wind[axis, part] += fresh * (sums[1 + axis, part] / sums[0, part] - flow.wind[axis, part])
+    for layer in range(layers):
         mean = 0.0
         for part in range(layer * columns + first, layer * columns + last):
-            mean += flow.sums[1, part] / flow.sums[0, part] if flow.sums[0, part] > 0.0 else math.nan
-        return mean / (last - first)
-
-    @kernel
-    def end(gauges):
-        """Finish the wind of a frame, and read its speed and that of rolls."""
-        flow, sums, reading = gauges.flow, gauges.flow.sums, gauges.reading
-        if flow.high.size == 0:
-            return
-        for speed in (Reading.WIND_SPEED, Reading.ROLL_SPEED):  # their squares, negative where noise has made them so
-            reading[speed] = math.copysign(math.sqrt(abs(reading[speed])), reading[speed])
-        flow.frames[0] += 1.0
-        fresh = max(_FRESH, 1.0 / flow.frames[0])
-        for part in range(sums.shape[1]):
-            if sums[0, part] > 0.0:
-                for axis in range(2):
-                    flow.wind[axis, part] += fresh * (sums[1 + axis, part] / sums[0, part] - flow.wind[axis, part])
-        for layer in range(flow.high.size):
-            gauges.layers[4 * flow.high.size + layer] = mean_along(layer, flow)
-        sums[:] = 0.0
-
-    return begin, sample, end
+            mean += sums[1, part] / sums[0, part] if sums[0, part] > 0.0 else math.nan
+        gauges.layers[4 * layers + layer] = mean / (last - first)
+    sums[:] = 0.0
 
 
 @kernel

@@ -10,18 +10,20 @@ from collections import namedtuple
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.schedule import interpolate
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.advance import ascent_of
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
-from atmosbox.lab.kernels.attracting import energy_of_wells
 from atmosbox.lab.kernels.averaging import update
-from atmosbox.lab.kernels.flowing import can_flow, flowing, write_adiabat
-from atmosbox.lab.kernels.hygrometer import hygrometry
+from atmosbox.lab.kernels.clustering import end_clusters, energy_of_wells
+from atmosbox.lab.kernels.flowing import begin_wind, can_flow, end_wind, sample_wind, write_adiabat
+from atmosbox.lab.kernels.hygrometer import begin_water, condensed_energy, end_water, sample_water
 from atmosbox.lab.kernels.readings import ENERGY, TIME, Reading
-from atmosbox.lab.kernels.sums import Sum, ceiling, summing
+from atmosbox.lab.kernels.sums import Sum, ceiling, sum_up
 from atmosbox.lab.kernels.two_gases import end_mixing
 
 
@@ -49,13 +51,65 @@ class Gauges(
     """
 
 
+@kernel
+def _sample_layers(gas, gauges):
+    """Add the molecules of each layer, and the energy of their disordered motion: see `layer_sample`."""
+    parts = gauges.parts
+    planes = 2.0 if gas.box.planar else 3.0
+    for part in range(parts.rows * parts.columns):
+        sums, layer = parts.sums[part], part // parts.columns
+        if sums[Sum.NUMBER] > 0.0:
+            square = sums[Sum.X] * sums[Sum.X] + sums[Sum.Y] * sums[Sum.Y] + sums[Sum.Z] * sums[Sum.Z]
+            gauges.layers[layer] += sums[Sum.NUMBER]
+            gauges.layers[parts.rows + layer] += sums[Sum.KINETIC] - 0.5 * square / sums[Sum.MASS]
+            gauges.layers[2 * parts.rows + layer] += planes * (sums[Sum.NUMBER] - 1.0)
+
+
+@kernel
+def _pressure(gas, now, lasted, gauges):
+    """Return the pressure of the frame from the impulses on the walls [energy/length^3]: see `open_faces`."""
+    box, whole = gas.box, gauges.whole.sums[0]
+    mean = whole[Sum.DIAMETER] / max(whole[Sum.NUMBER], 1.0)
+    has_x, has_y, has_z = box.inverse_x == 0.0, box.inverse_y == 0.0 and not box.planar, box.inverse_z == 0.0
+    x, z = box.length_x - mean * has_x, ceiling(gas, now) - mean * has_z
+    y = 1.0 if box.planar else box.length_y - mean * has_y
+    faces = y * z * has_x, x * z * has_y, x * y * has_z  # 0 where there is no wall
+    impulse = area = 0.0
+    for wall in range(6):
+        if gauges.barometer == 0 or gauges.barometer == wall:
+            impulse += gas.tallies.impulse[wall] - gauges.before[wall]
+            area += faces[wall // 2]
+    return impulse / (area * lasted) if area > 0.0 and lasted > 0.0 else math.nan
+
+
+@kernel
+def _end_lift(gas, ascent, book, gauges):
+    """Read the state of a rising parcel from its energy ledger: see `instruments.Lift`."""
+    lift, reading = ascent.lift, gauges.reading
+    here = ascent_of(ascent, book, ascent.filled)
+    at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, here)
+    kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
+    reading[Reading.PARCEL_TEMPERATURE] = kT
+    reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)
+    reading[Reading.MOMENT] = interpolate(reading[Reading.ELAPSED_TIME], lift.course_time, lift.course_moment)
+
+
+@kernel
+def _begin_frame(gas, time, gauges):
+    """Keep what a frame begins with."""
+    for wall in range(6):
+        gauges.before[wall] = gas.tallies.impulse[wall]
+    for layer in range(gauges.virial.size):
+        gauges.virial[layer] = gas.tallies.virial[layer]
+    gauges.before[TIME] = time
+    gauges.samples[0] = 0.0
+    gauges.reading[Reading.MOLECULES_IN_GAS] = gauges.whole.sums[0, Sum.NUMBER]
+
+
 @functools.cache
-def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], ...]:
+def gauging(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels ``begin``, ``sample``, ``end_frame`` and ``note_frame`` of one set of modes."""
-    sum_up = summing(modes)
     flows = can_flow(modes)
-    begin_wind, sample_wind, end_wind = flowing(modes)
-    begin_water, sample_water, condensed_energy, end_water = hygrometry(modes)
 
     @kernel
     def energy_now(gas, book, gauges):
@@ -64,20 +118,7 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
         energy = whole[Sum.KINETIC] + whole[Sum.ROTATION] + gas.box.gravity * whole[Sum.WEIGHT]
         if wells:
             energy += energy_of_wells(gas.wells)
-        return energy + condensed_energy(gas, book) if modes.phases else energy
-
-    @kernel
-    def sample_layers(gas, gauges):
-        """Add the molecules of each layer, and the energy of their disordered motion: see `layer_sample`."""
-        parts = gauges.parts
-        planes = 2.0 if gas.box.planar else 3.0
-        for part in range(parts.rows * parts.columns):
-            sums, layer = parts.sums[part], part // parts.columns
-            if sums[Sum.NUMBER] > 0.0:
-                square = sums[Sum.X] * sums[Sum.X] + sums[Sum.Y] * sums[Sum.Y] + sums[Sum.Z] * sums[Sum.Z]
-                gauges.layers[layer] += sums[Sum.NUMBER]
-                gauges.layers[parts.rows + layer] += sums[Sum.KINETIC] - 0.5 * square / sums[Sum.MASS]
-                gauges.layers[2 * parts.rows + layer] += planes * (sums[Sum.NUMBER] - 1.0)
+        return energy + condensed_energy(gas, book, modes) if modes.phases else energy
 
     @kernel
     def sample(gas, ascent, book, gauges):
@@ -87,72 +128,25 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
             gauges.speeds[:] = 0.0
             gauges.layers[:] = 0.0
         gauges.samples[0] += 1.0
-        sum_up(gas, book.now[0], (gauges.whole, gauges.parts, gauges.fast, gauges.sides))
+        sum_up(gas, book.now[0], gauges, modes)
         whole = gauges.whole.sums[0]
         planes = 2.0 if gas.box.planar else 3.0
         gauges.means[Reading.AIR_TEMPERATURE] += 2.0 * whole[Sum.KINETIC] / (planes * whole[Sum.NUMBER])
         for k in range(gauges.speeds.size):
             gauges.speeds[k] += gauges.fast.sums[k, Sum.NUMBER]
         if gauges.layers.size > 0:
-            sample_layers(gas, gauges)
+            _sample_layers(gas, gauges)
         if flows:
             sample_wind(gas, gauges)
         if modes.phases:
-            sample_water(gas, ascent, book, gauges)
+            sample_water(gas, ascent, book, gauges, modes)
         return 0
 
     @kernel
-    def pressure(gas, now, lasted, gauges):
-        """Return the pressure of the frame from the impulses on the walls [energy/length^3]: see `open_faces`."""
-        box, whole = gas.box, gauges.whole.sums[0]
-        mean = whole[Sum.DIAMETER] / max(whole[Sum.NUMBER], 1.0)
-        has_x, has_y, has_z = box.inverse_x == 0.0, box.inverse_y == 0.0 and not box.planar, box.inverse_z == 0.0
-        x, z = box.length_x - mean * has_x, ceiling(gas, now) - mean * has_z
-        y = 1.0 if box.planar else box.length_y - mean * has_y
-        faces = y * z * has_x, x * z * has_y, x * y * has_z  # 0 where there is no wall
-        impulse = area = 0.0
-        for wall in range(6):
-            if gauges.barometer == 0 or gauges.barometer == wall:
-                impulse += gas.tallies.impulse[wall] - gauges.before[wall]
-                area += faces[wall // 2]
-        return impulse / (area * lasted) if area > 0.0 and lasted > 0.0 else math.nan
-
-    @kernel
-    def end_discs(gauges):
-        """Measure the mean energies of the light and of the heavy discs since the start."""
-        running, half = gauges.running, gauges.sides.sums
-        running[2] += 1.0
-        for k in range(2):
-            running[k] += half[k, Sum.KINETIC] / max(half[k, Sum.NUMBER], 1.0)
-            gauges.reading[Reading.RUNNING_ENERGY_LIGHT + k] = running[k] / running[2]
-
-    @kernel
-    def end_lift(gas, ascent, book, gauges):
-        """Read the state of a rising parcel from its energy ledger: see `instruments.Lift`."""
-        lift, reading = ascent.lift, gauges.reading
-        here = ascent_of(ascent, book, ascent.filled)
-        at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, here)
-        kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
-        reading[Reading.PARCEL_TEMPERATURE] = kT
-        reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)
-        reading[Reading.MOMENT] = interpolate(reading[Reading.ELAPSED_TIME], lift.course_time, lift.course_moment)
-
-    @kernel
-    def begin_frame(gas, time, gauges):
-        """Keep what a frame begins with."""
-        for wall in range(6):
-            gauges.before[wall] = gas.tallies.impulse[wall]
-        for layer in range(gauges.virial.size):
-            gauges.virial[layer] = gas.tallies.virial[layer]
-        gauges.before[TIME] = time
-        gauges.samples[0] = 0.0
-        gauges.reading[Reading.MOLECULES_IN_GAS] = gauges.whole.sums[0, Sum.NUMBER]
-
-    @kernel
-    def begin(gas, ascent, book, gauges):
+    def begin(gas, ascent, book, gauges, crowd):
         """Begin to measure."""
-        sum_up(gas, book.now[0], (gauges.whole, gauges.parts, gauges.fast, gauges.sides))
-        begin_frame(gas, gas.walls.epoch[0] + book.now[0], gauges)
+        sum_up(gas, book.now[0], gauges, modes)
+        _begin_frame(gas, gas.walls.epoch[0] + book.now[0], gauges)
         gauges.before[ENERGY] = energy_now(gas, book, gauges)
         gauges.running[:] = 0.0
         gauges.mixture.off[:] = math.inf
@@ -162,10 +156,12 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
             begin_wind(gauges.flow)
         if modes.phases:
             begin_water(book, gauges)
+        if wells:
+            crowd.virial[0] = np.sum(gas.tallies.virial)
         return 0
 
     @kernel
-    def end_frame(gas, ascent, book, gauges):
+    def end_frame(gas, ascent, book, gauges, layout, crowd):
         """Take the readings at the end of a frame, which is the moment of its last sample, and complete its means."""
         reading, now, samples = gauges.reading, book.now[0], max(gauges.samples[0], 1.0)
         time = gas.walls.epoch[0] + now
@@ -182,7 +178,7 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
         for k in range(reading.size):
             reading[k] = gauges.means[k] / samples
         reading[Reading.ELAPSED_TIME] = time
-        reading[Reading.AIR_PRESSURE] = pressure(gas, now, lasted, gauges)
+        reading[Reading.AIR_PRESSURE] = _pressure(gas, now, lasted, gauges)
         off = abs(total - gauges.before[ENERGY] - given)
         reading[Reading.LEDGER_RESIDUAL] = off / largest if largest > 0.0 else 0.0
         reading[Reading.COLLISION_COUNT] = gas.tallies.count[0]
@@ -199,17 +195,23 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
             for k in range(3):
                 gauges.layers[k * layers + layer] /= samples
             gauges.layers[3 * layers + layer] = (gas.tallies.virial[layer] - gauges.virial[layer]) / lasted
-        if gauges.running.size > 0:
-            end_discs(gauges)
+        if gauges.running.size > 0:  # the mean energies of the light and of the heavy discs since the start
+            gauges.running[2] += 1.0
+            for k in range(2):
+                half = gauges.sides.sums[k]
+                gauges.running[k] += half[Sum.KINETIC] / max(half[Sum.NUMBER], 1.0)
+                reading[Reading.RUNNING_ENERGY_LIGHT + k] = gauges.running[k] / gauges.running[2]
         if gauges.sides.columns > 1:
             end_mixing(time, gauges)
         if flows:
             end_wind(gauges)
         if modes.phases:
-            end_water(gas, ascent, book, time, lasted, gauges)
+            end_water(gas, ascent, book, time, lasted, gauges, modes)
         elif modes.ascends:
-            end_lift(gas, ascent, book, gauges)
-        begin_frame(gas, time, gauges)
+            _end_lift(gas, ascent, book, gauges)
+        if wells:
+            end_clusters(gas, lasted, reading, layout, crowd)
+        _begin_frame(gas, time, gauges)
         return 0
 
     @kernel
@@ -221,4 +223,4 @@ def gauging(modes: Modes, *, wells: bool = False) -> tuple[Callable[..., Any], .
             write_adiabat(gas.box, layers.mean, gauges.flow)
         return 0
 
-    return begin, sample, end_frame, note_frame
+    return {"begin": begin, "sample": sample, "end_frame": end_frame, "note_frame": note_frame}

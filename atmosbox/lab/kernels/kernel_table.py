@@ -13,9 +13,7 @@ from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.layout import PLACE
 from atmosbox.engine.liquid.moist_loop import moist_loop
 from atmosbox.engine.wells import well_advance
-from atmosbox.lab.kernels.attracting import attracting
 from atmosbox.lab.kernels.averaging import begin_averages_anew
-from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.knobs import knobs
 from atmosbox.lab.kernels.picture import picture
@@ -24,10 +22,8 @@ from atmosbox.lab.kernels.starting import starting
 
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
-    found = knobs(modes, wells=wells)
-    found |= {"start": starting(modes, wells=wells), "look": picture(modes), "begin_averages_anew": begin_averages_anew}
-    found |= zip(("begin", "sample", "end_frame", "note_frame"), gauging(modes, wells=wells), strict=True)
-    found |= attracting(modes) | clustering(modes) if wells else {}
+    found = knobs(modes, wells=wells) | {"start": starting(modes, wells=wells), "look": picture(modes, wells=wells)}
+    found |= {"begin_averages_anew": begin_averages_anew} | gauging(modes, wells=wells)
     loops = moist_loop if modes.phases else dry_loop
     pass_time, settle = well_advance.advancing(modes) if wells else advancing(modes, loops)
 
@@ -35,11 +31,9 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
     def place(gas, book, layout):
         """Enter all molecules into their cells or lists and plan their events; return ``DONE`` or ``FULL``."""
         layout.due[0] = PLACE
-        if not wells:
-            return Status.DONE.value if settle(gas, book.now[0], layout) else Status.FULL.value
-        state, clock = gas.tallies.random[0], gas.bath.clock[0]
+        state, clock = gas.tallies.random[0], gas.bath.clock[0] if wells else math.inf
         placed = settle(gas, book.now[0], layout)
-        if not math.isinf(clock):  # the first time of the bath is drawn already
+        if wells and not math.isinf(clock):  # the first time of the bath is drawn already
             gas.tallies.random[0] = state
             gas.bath.clock[0] = clock
         return Status.DONE.value if placed else Status.FULL.value

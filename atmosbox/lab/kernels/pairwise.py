@@ -9,19 +9,15 @@ _PIECE, _LANES = 128, 8
 
 
 @kernel(plain=True)
-def _lane(values, first, last):
-    """Return the sum of every eighth value."""
+def _lanes(values, first, last, number):
+    """Return the sum of some lanes side by side, by halves; a lane is every eighth value."""
+    if number > 1:
+        half = number // 2
+        return _lanes(values, first, last, half) + _lanes(values, first + half, last, half)
     total = values[first]
     for k in range(first + _LANES, last, _LANES):
         total += values[k]
     return total
-
-
-@kernel(plain=True)
-def _lanes(values, k, last):
-    """Return the sum of four lanes side by side."""
-    low = _lane(values, k, last) + _lane(values, k + 1, last)
-    return low + (_lane(values, k + 2, last) + _lane(values, k + 3, last))
 
 
 @kernel(plain=True)
@@ -38,7 +34,7 @@ def pairwise_sum(values, first, number):
         return pairwise_sum(values, first, half) + pairwise_sum(values, first + half, number - half)
     total, last = -0.0, first + number - number % _LANES
     if last > first:
-        total = _lanes(values, first, last) + _lanes(values, first + 4, last)
+        total = _lanes(values, first, last, _LANES)
     for k in range(last, first + number):
         total += values[k]
     return total

@@ -11,6 +11,7 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
 from atmosbox.engine.liquid.reservoir import LIQUID, RAINED
+from atmosbox.lab.kernels.clustering import count_wells
 from atmosbox.lab.kernels.sums import ceiling, is_away
 from atmosbox.page.frame import POOL, RAIN
 
@@ -33,97 +34,74 @@ class Picture(namedtuple("Picture", "shown length place colour highest state dro
 
 
 @functools.cache
-def picture(modes: Modes) -> Callable[..., Any]:
-    """Return the kernel ``look`` of one set of modes."""
-    look_at_liquid = _liquid(modes)
+def picture(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
+    """Return the kernel ``look`` of one set of modes; ``wells`` if molecules attract each other."""
 
     @kernel
-    def share(u, length, inverse):
-        """Return a coordinate over a side of the box, as a 16-bit number."""
-        part = u / length
-        if inverse != 0.0:
-            part -= math.floor(part)
-        return math.floor(min(max(part, 0.0), 1.0) * _FINEST + 0.5)
-
-    @kernel
-    def look(gas, book, picture):
-        """Write the positions and the colours, by speed, of all molecules that are shown."""
+    def look(gas, book, layout, crowd, picture):
+        """Write positions and colours of the molecules that are shown: by speed, or by the wells that each is in."""
         now, box = book.now[0], gas.box
         picture.length[0] = box.length_x
         picture.length[1] = box.length_y
         picture.length[2] = ceiling(gas, now)
+        if wells:
+            count_wells(gas.vicinity, layout.stride[0], crowd.wells)
         for k in range(picture.shown.size):
-            picture.state[k] = 0
-            if is_away(picture.shown[k], gas, modes):
-                picture.place[k, 0] = picture.place[k, 1] = picture.place[k, 2] = 0
+            picture.state[k] = is_away(picture.shown[k], gas, modes)
+            if picture.state[k] == 1:
+                picture.place[k] = 0
                 picture.colour[k] = 0
-                picture.state[k] = 1
                 continue
             at = motion_at(picture.shown[k], now, gas, modes)
-            picture.place[k, 0] = int(share(at.x, picture.length[0], box.inverse_x))
-            picture.place[k, 1] = int(share(at.y, picture.length[1], box.inverse_y))
-            picture.place[k, 2] = int(share(at.z, picture.length[2], box.inverse_z))
-            speed = math.sqrt(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
-            picture.colour[k] = math.floor(min(speed / picture.highest, 1.0) * _FASTEST + 0.5)
+            picture.place[k, 0] = _share(at.x, picture.length[0], box.inverse_x)
+            picture.place[k, 1] = _share(at.y, picture.length[1], box.inverse_y)
+            picture.place[k, 2] = _share(at.z, picture.length[2], box.inverse_z)
+            value = math.sqrt(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
+            if wells:
+                value = crowd.wells[picture.shown[k]]
+            picture.colour[k] = math.floor(min(value / picture.highest, 1.0) * _FASTEST + 0.5)
         if modes.phases:
-            look_at_liquid(gas, book, picture)
+            _look_at_liquid(gas, book, picture, modes)
         return 0
 
     return look  # type: ignore[no-any-return]
 
 
-@functools.cache
-def _liquid(modes: Modes) -> Callable[..., Any]:
-    """Return the kernel of one set of modes that writes which drops are drawn."""
+@kernel
+def _share(u, length, inverse):
+    """Return a coordinate over a side of the box, as a 16-bit number."""
+    part = u / length
+    if inverse != 0.0:
+        part -= math.floor(part)
+    return int(min(max(part, 0.0), 1.0) * _FINEST + 0.5)
 
-    @kernel
-    def draw_layer(number, what, picture):
-        """Draw this number of molecules as a layer on the floor."""
-        if number > 0 and picture.water > 0:
-            row = picture.drops[picture.many[0]]
-            row[0] = row[1] = 0.0
-            row[2] = min(number / picture.water, 1.0)
-            row[3] = what
-            picture.many[0] += 1
 
-    @kernel
-    def draw_mist(number, picture):
-        """Draw this number of molecules as clumps, which are all alike and have fixed places."""
-        if number <= 0:
-            return
-        many = min(picture.spread.shape[0], number)
-        radius = picture.clump * cbrt(number / many)
-        for k in range(many):
-            for axis in range(3):
-                picture.drops[k, axis] = picture.spread[k, axis] * picture.length[axis] * picture.unit
-            picture.drops[k, 3] = radius
-        picture.many[0] = many
+@kernel
+def _draw(x, y, z, size, picture):
+    """Add a piece of liquid to those that are drawn, in the unit of the page."""
+    row = picture.drops[picture.many[0]]
+    row[0], row[1], row[2], row[3] = x, y, z, size
+    picture.many[0] += 1
 
-    @kernel
-    def draw_drops(gas, book, picture):
-        """Draw the drops at their positions, in their size."""
-        drops, box = book.moisture.drops, gas.box
+
+@kernel
+def _look_at_liquid(gas, book, picture, modes):
+    """Write the liquid as drops, as clumps that are all alike and have fixed places, or as layers on the floor."""
+    box, drops, count, unit = gas.box, book.moisture.drops, book.moisture.reservoir.count, picture.unit
+    picture.many[0] = 0
+    if modes.drops > 0:
         for k in range(drops.record.size):
             if drops.alive[k] == 1:
-                row = picture.drops[picture.many[0]]
                 at = motion_at(drops.record[k], book.now[0], gas, modes)
-                row[0] = (at.x - math.floor(at.x * box.inverse_x) * box.length_x) * picture.unit
-                row[1] = (at.y - math.floor(at.y * box.inverse_y) * box.length_y) * picture.unit
-                row[2] = (at.z - math.floor(at.z * box.inverse_z) * box.length_z) * picture.unit
-                row[3] = gas.kinds.table[modes.drops + k].radius * picture.unit
-                picture.many[0] += 1
-
-    @kernel
-    def look_at_liquid(gas, book, picture):
-        """Write the drops, clumps or layers to draw, in the unit of the page."""
-        count = book.moisture.reservoir.count
-        picture.many[0] = 0
-        if modes.drops > 0:
-            draw_drops(gas, book, picture)
-        elif modes.pool:
-            draw_layer(count[LIQUID], POOL, picture)
-        else:
-            draw_mist(count[LIQUID], picture)
-        draw_layer(count[RAINED], RAIN, picture)
-
-    return look_at_liquid  # type: ignore[no-any-return]
+                x = at.x - math.floor(at.x * box.inverse_x) * box.length_x
+                y = at.y - math.floor(at.y * box.inverse_y) * box.length_y
+                z = at.z - math.floor(at.z * box.inverse_z) * box.length_z
+                _draw(x * unit, y * unit, z * unit, gas.kinds.table[modes.drops + k].radius * unit, picture)
+    elif not modes.pool:
+        many, side = min(picture.spread.shape[0], count[LIQUID]), picture.length
+        for k in range(many):
+            at, radius = picture.spread[k], picture.clump * cbrt(count[LIQUID] / many)
+            _draw(at[0] * side[0] * unit, at[1] * side[1] * unit, at[2] * side[2] * unit, radius, picture)
+    for number, what in ((count[LIQUID] if modes.pool else 0, POOL), (count[RAINED], RAIN)):
+        if number > 0 and picture.water > 0:
+            _draw(0.0, 0.0, min(number / picture.water, 1.0), what, picture)

@@ -15,7 +15,7 @@ import numpy as np
 from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, ceiling_velocity
-from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
+from atmosbox.engine.core.random import RUN, START, STEP, gaussian_pair, scramble, uniform
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.advance import dry_loop
 from atmosbox.engine.exact.layout import write_column
@@ -31,8 +31,6 @@ PLACES, VELOCITIES, SPINS = range(3)
 NUMBERED = ("as placed", "at random", "along x")
 """How molecules are numbered after they have been placed, see `Scattered`; `AT_RANDOM`, `ALONG_X` are numbers of it."""
 _, AT_RANDOM, ALONG_X = range(3)
-_STEP = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
     np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & ((1 << 64) - 1)) for use in (RUN, START)
 )
@@ -69,34 +67,6 @@ class Start(
 
 
 @kernel
-def _first_state(seed, first):
-    """Return the first state of the random numbers of a seed below 2^64: see `random.new_state`."""
-    z = (first ^ seed) + _STEP
-    z = (z ^ (z >> np.uint64(30))) * _MIX_1
-    z = (z ^ (z >> np.uint64(27))) * _MIX_2
-    return z ^ (z >> np.uint64(31))
-
-
-@kernel
-def _sort(key, rank):
-    """Write the order of keys, stable for equal keys: insertion of keys at distances that are halved (Shell)."""
-    number = rank.size
-    for k in range(number):
-        rank[k] = k
-    gap = number // 2
-    while gap > 0:
-        for k in range(gap, number):
-            one, to = rank[k], k
-            while to >= gap and (
-                key[one] < key[rank[to - gap]] or (key[one] == key[rank[to - gap]] and one < rank[to - gap])
-            ):
-                rank[to] = rank[to - gap]
-                to -= gap
-            rank[to] = one
-        gap //= 2
-
-
-@kernel
 def _place(start):
     """Place all molecules at random; return whether that was possible: see `random_positions`."""
     state = start.state
@@ -111,46 +81,48 @@ def _place(start):
 
 @kernel
 def _number(start):
-    """Assign a number to each molecule."""
-    key = start.key
-    for i in range(start.rank.size):
-        key[i] = i
+    """Assign a number to each molecule: sort their keys, stably, by insertion at distances that are halved (Shell)."""
+    key, rank = start.key, start.rank
+    for i in range(rank.size):
+        rank[i], key[i] = i, i
         if start.numbered == AT_RANDOM:
             key[i] = uniform(start.state)
         elif start.numbered == ALONG_X:
             key[i] = start.spheres.x[i, 0]
-    _sort(key, start.rank)
+    gap = rank.size // 2
+    while gap > 0:
+        for i in range(gap, rank.size):
+            one, to = rank[i], i
+            while to >= gap and (key[one], one) < (key[rank[to - gap]], rank[to - gap]):
+                rank[to] = rank[to - gap]
+                to -= gap
+            rank[to] = one
+        gap //= 2
 
 
 @kernel
 def _move(start, planar):
-    """Draw the velocities of all molecules."""
-    v, key, factor = start.velocity, start.key, start.factor
-    for k in range(0, 3 * v.shape[0], 2):
+    """Draw the velocities of all molecules; without mean motion and of the prescribed energy if the start is exact."""
+    v, key, factor, mass = start.velocity, start.key, start.factor, start.mass
+    for k in range(0, 3 * mass.size, 2):
         key[k], key[k + 1] = gaussian_pair(start.state)
-    for i in range(v.shape[0]):
+    for i in range(mass.size):
         square = 0.0
         for axis in range(3):
             v[i, axis] = 0.0 if planar and axis == 1 else key[3 * i + axis]
             square += v[i, axis] * v[i, axis]
         for axis in range(3):
             v[i, axis] = start.speed * v[i, axis] / math.sqrt(square) if start.speed > 0.0 else v[i, axis] * factor[i]
-    if start.twice > 0.0:
-        _be_at_rest(start)
-
-
-@kernel
-def _be_at_rest(start):
-    """Remove the mean motion from the velocities, and scale them to the prescribed energy."""
-    v, mass = start.velocity, start.mass
+    if not start.twice > 0.0:
+        return
     for axis in range(3):
         momentum = 0.0
         for i in range(mass.size):
             momentum += mass[i] * v[i, axis]
         for i in range(mass.size):
             v[i, axis] -= momentum / start.weight
-            start.key[3 * i + axis] = mass[i] * v[i, axis] * v[i, axis]
-    v *= math.sqrt(start.twice / pairwise_sum(start.key, 0, 3 * mass.size))
+            key[3 * i + axis] = mass[i] * v[i, axis] * v[i, axis]
+    v *= math.sqrt(start.twice / pairwise_sum(key, 0, 3 * mass.size))
 
 
 @kernel
@@ -211,12 +183,13 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
     _, _, wake = (moist_loop if modes.phases else dry_loop)(modes)
 
     @kernel
-    def draw(gas, begun):
-        """Draw positions, velocities and rotational energies in their order; return whether there is room."""
+    def start(gas, ascent, book, begun, seed):
+        """Give all molecules the positions and velocities of a seed; return 1 if that is not possible, else 0."""
+        begun.state[0] = scramble(_FIRST_OF_START ^ np.uint64(seed))
         for part in begun.parts:
             if part == PLACES:
                 if not _place(begun):
-                    return False
+                    return 1
                 if modes.drops > 0:
                     clear(begun.spheres.x, begun.cleared.centre, begun.cleared.reach, begun.cleared.side, begun.state)
                 _number(begun)
@@ -225,16 +198,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             elif modes.rotation:
                 _turn(begun, gas.kinds.rotational_energy[: begun.degrees.size])
             else:  # molecules without rotation: their numbers are drawn, too
-                begun.state[0] += _STEP * np.uint64(begun.degrees.size)
-        return True
-
-    @kernel
-    def start(gas, ascent, book, begun, seed):
-        """Give all molecules the positions and velocities of a seed; return whether that was possible."""
-        word = np.uint64(seed)
-        begun.state[0] = _first_state(word, _FIRST_OF_START)
-        if not draw(gas, begun):
-            return 1
+                begun.state[0] += STEP * np.uint64(begun.degrees.size)
         for i in range(begun.rank.size):
             molecule, k = gas.molecules[i], begun.rank[i]
             molecule.x = begun.spheres.x[k, 0]
@@ -243,7 +207,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             molecule.vx = begun.velocity[i, 0]
             molecule.vy = begun.velocity[i, 1]
             molecule.vz = begun.velocity[i, 2]
-        gas.tallies.random[0] = _first_state(word, _FIRST_OF_RUN)
+        gas.tallies.random[0] = scramble(_FIRST_OF_RUN ^ np.uint64(seed))
         _write_epoch(begun, book)
         kinetic, fastest = kinetic_energy(gas, begun)
         energy = kinetic

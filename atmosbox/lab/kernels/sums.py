@@ -3,18 +3,14 @@
 An instrument in Python sums with numpy what its page sums here: all quantities, for the bins that are declared for it.
 """
 
-import functools
 import math
 from collections import namedtuple
-from collections.abc import Callable
 from enum import IntEnum
-from typing import Any
 
 import numpy as np
 
 from atmosbox.engine.core.elementary import circle
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import kind_of, motion_at
 
 Sum = IntEnum("Sum", "NUMBER MASS X Y Z KINETIC ROTATION WEIGHT DIAMETER UPRIGHT COSINE", start=0)
@@ -49,65 +45,45 @@ def ceiling(gas, now):
 
 
 @kernel
-def across(x, box, bins):
-    """Return a place along x as a share of the width of the bins."""
-    share = (x - bins.low) / bins.width
-    return share - math.floor(share) if box.inverse_x != 0.0 else share
-
-
-@kernel
-def _bin_of(i, at, speed, height, box, bins):
-    """Return the bin of molecule i; -1 if its speed is in none."""
-    # by rounding, a molecule that touches a wall may be a little beyond the bins
-    row = min(max(int(at.z / height * bins.rows), 0), bins.rows - 1)
-    column = min(max(int(across(at.x, box, bins) * bins.columns), 0), bins.columns - 1)
-    place = row * bins.columns + column
-    if bins.kind.size > 0:
-        place += bins.kind[i] * bins.rows * bins.columns
-    speeds = bins.edges.size - 1
-    if speeds > 0:
-        low, high = bins.edges[0], bins.edges[speeds]
-        fast = min(int((speed - low) / (high - low) * speeds), speeds - 1)
-        place = place * speeds + fast if low <= speed <= high else -1
-    return place
-
-
-@functools.cache
-def summing(modes: Modes) -> Callable[..., Any]:
-    """Return the kernel ``sum_up`` of one set of modes."""
-
-    @kernel
-    def sum_up(gas, now, groups):
-        """Write the sums over all molecules of the gas, for each group of bins."""
-        height = ceiling(gas, now)
+def sum_up(gas, now, gauges, modes):
+    """Write the sums over all molecules of the gas, for each group of bins."""
+    height, groups = ceiling(gas, now), (gauges.whole, gauges.parts, gauges.fast, gauges.sides)
+    for bins in groups:
+        bins.sums[:] = 0.0
+    for i in range(gas.molecules.size):
+        if is_away(i, gas, modes):
+            continue
+        at = motion_at(i, now, gas, modes)
+        mass, radius, _ = kind_of(i, gas, modes)
+        square = at.vx * at.vx + at.vy * at.vy + at.vz * at.vz
         for bins in groups:
-            bins.sums[:] = 0.0
-        for i in range(gas.molecules.size):
-            if is_away(i, gas, modes):
+            if bins.sums.size == 0:
                 continue
-            at = motion_at(i, now, gas, modes)
-            mass, radius, _ = kind_of(i, gas, modes)
-            square = at.vx * at.vx + at.vy * at.vy + at.vz * at.vz
-            for bins in groups:
-                if bins.sums.size == 0:
+            # by rounding, a molecule that touches a wall may be a little beyond the bins
+            share = (at.x - bins.low) / bins.width
+            share = min(max(share - math.floor(share) if gas.box.inverse_x != 0.0 else share, 0.0), 1.0)
+            row = min(max(int(at.z / height * bins.rows), 0), bins.rows - 1)
+            if bins.kind.size > 0:
+                row += bins.kind[i] * bins.rows
+            place = row * bins.columns + min(int(share * bins.columns), bins.columns - 1)
+            speeds = bins.edges.size - 1
+            if speeds > 0:
+                speed, low, high = math.sqrt(square), bins.edges[0], bins.edges[speeds]
+                if not low <= speed <= high:
                     continue
-                place = _bin_of(i, at, math.sqrt(square), height, gas.box, bins)
-                if place < 0:
-                    continue
-                sums = bins.sums[place]
-                sums[Sum.NUMBER] += 1.0
-                sums[Sum.MASS] += mass
-                sums[Sum.X] += mass * at.vx
-                sums[Sum.Y] += mass * at.vy
-                sums[Sum.Z] += mass * at.vz
-                sums[Sum.KINETIC] += 0.5 * mass * square
-                sums[Sum.WEIGHT] += mass * at.z
-                sums[Sum.DIAMETER] += 2.0 * radius
-                sums[Sum.UPRIGHT] += at.vz * at.vz
-                if modes.rotation:
-                    sums[Sum.ROTATION] += gas.kinds.rotational_energy[i]
-                if bins.columns > 1:
-                    cosine, _ = circle(0.5 * min(max(across(at.x, gas.box, bins), 0.0), 1.0))
-                    sums[Sum.COSINE] += cosine
-
-    return sum_up  # type: ignore[no-any-return]
+                place = place * speeds + min(int((speed - low) / (high - low) * speeds), speeds - 1)
+            sums = bins.sums[place]
+            sums[Sum.NUMBER] += 1.0
+            sums[Sum.MASS] += mass
+            sums[Sum.X] += mass * at.vx
+            sums[Sum.Y] += mass * at.vy
+            sums[Sum.Z] += mass * at.vz
+            sums[Sum.KINETIC] += 0.5 * mass * square
+            sums[Sum.WEIGHT] += mass * at.z
+            sums[Sum.DIAMETER] += 2.0 * radius
+            sums[Sum.UPRIGHT] += at.vz * at.vz
+            if modes.rotation:
+                sums[Sum.ROTATION] += gas.kinds.rotational_energy[i]
+            if bins.columns > 1:
+                cosine, _ = circle(0.5 * share)
+                sums[Sum.COSINE] += cosine
