@@ -33,13 +33,12 @@ def _gather(values, average):
     """Add the values of a frame to the blocks."""
     state, blocks = average.state, average.blocks
     for k in range(values.size):
-        blocks[state[HELD], k] += values[k]
+        blocks[state[HELD], k] = values[k] + (blocks[state[HELD], k] if state[FRAMES] > 0 else 0.0)
         blocks[ALL, k] += values[k]
     state[FRAMES] += 1
     if state[FRAMES] == state[LENGTH] and state[HELD] < BLOCKS:
         state[HELD] += 1
         state[FRAMES] = 0
-        blocks[state[HELD]] = 0.0
     elif state[FRAMES] == state[LENGTH]:  # no row is left
         for k in range(values.size):
             for block in range(BLOCKS // 2):

@@ -49,7 +49,7 @@ def picture(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
         for k in range(picture.shown.size):
             picture.state[k] = is_away(picture.shown[k], gas, modes)
             if picture.state[k] == 1:
-                picture.place[k] = 0
+                picture.place[k, 0] = picture.place[k, 1] = picture.place[k, 2] = 0
                 picture.colour[k] = 0
                 continue
             at = motion_at(picture.shown[k], now, gas, modes)
