@@ -74,7 +74,7 @@ PageTheme = Annotated[
 ]
 DryRun = Annotated[bool, switch("--dry-run", "Show what would run, compute nothing and write nothing.")]
 Json = Annotated[bool, switch("--json", "Print one JSON object and nothing else.")]
-Verbose = Annotated[bool, switch("--verbose", "Say more, with the traceback of a bug.")]
+Verbose = Annotated[bool, switch("--verbose", "Show the traceback of a bug.")]
 
 
 @dataclass(frozen=True)

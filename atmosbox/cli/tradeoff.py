@@ -36,8 +36,9 @@ def tradeoff(
 ) -> None:
     """Measure speed against accuracy: errors and seconds of a scene on several engines and settings.
 
-    Each engine and setting runs as often as the budget allows, with different seeds; the engines are compiled first.
-    Ctrl-C ends it early and keeps what was measured. If it was killed, type the same command again to go on.
+    Each engine and setting runs as often as the budget allows, at most 64 times, with different seeds; the engines are
+    compiled first. Ctrl-C ends it early and keeps what was measured. If it was killed, type the same command again to
+    go on.
     """
     from atmosbox.file.output_path import check_writable
     from atmosbox.plot.tradeoff_figure import recommended
