@@ -169,7 +169,7 @@ def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
         "box": f"a cube of {1e9 * (box.side + 1.0) * box.scale.length:.1f} nm, real size",
         "real molecules per simulated one": "1",
         "exaggeration": f"none in the gas; molecules hit drops as if these were {settings.drop_size:g} times as wide, "
-        "and the nuclei keep their temperature",
+        "and the drops keep their temperature",
         "vapour at the start": f"{box.vapour} molecules; {box.full:.0f} saturate the air",
         "surface tension": f"{1e3 * growth.tension:.1f} mN/m",
     }

@@ -154,7 +154,7 @@ def _attributes(plan: Plan, names: list[str], dimensions: dict[str, str], comman
     *others, last = [name.replace("_", " ") for name in plan.vary]
     return global_attributes(
         parameters,
-        title=f"{plan.title}: {', '.join(others)}{' and ' * bool(others)}{last} varied",
+        title=f"{plan.title} ({', '.join(others)}{' and ' * bool(others)}{last} varied)",
         command=command,
         comment=" ".join((plan.prepared[0].module.__doc__ or "").split()),
         references=plan.prepared[0].engine.engine.reference,
