@@ -317,7 +317,7 @@ def run(
     humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
     area: area of the mist, in faces of the box; 0.01 to 100
     drops: number of nuclei of drops that can be seen; 0 for a mist; 0 to 50
-    drop_size: how many times wider the drops are than real ones; 1 to 20
+    drop_size: width of the drops, divided by that of real ones; 1 to 20
     duration [ns]: how long to watch; 0.01 ns to 100000 ns
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
@@ -357,7 +357,7 @@ def run(
     salt: pairs of ions in each grain of salt; 1 to 1000
     water: molecules of water in each drop at the start; 0 to 5000
     tension: surface tension, divided by that of water; 0 to 2
-    drop_size: how many times wider the drops are than real ones; 1 to 10
+    drop_size: width of the drops, divided by that of real ones; 1 to 10
     duration [ns]: how long to watch; 0.1 ns to 100000 ns
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
