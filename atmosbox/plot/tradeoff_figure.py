@@ -166,7 +166,8 @@ def recommended(dataset: xr.Dataset) -> tuple[int, bool] | None:
     of running the same experiment count: a series with a switch of its own, such as discs in a plane, is another
     experiment. None if no way has known errors and a known cost.
     """
-    numbers = ~_are_curves(dataset)
+    # the curve of a parcel counts, as for `--accuracy`: beside the adiabat it tells what a fast ascent costs
+    numbers = ~_are_curves(dataset) | (dataset.quantity.values == "parcel_temperature")
     allowed = np.array([limit(str(unit)) for unit in dataset.unit.values])
     worst = (_total(dataset) / allowed)[:, numbers].max(axis=1, initial=0.0)
     own = [row["settings"].values() for row in _rows(dataset)]
