@@ -142,7 +142,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         mean = float(dataset.kinetic_energy.values[0]) / settings.molecules
         memory = _memory(dataset) / settings.si.duration * FRAMES
         share = block_average(late.kinetic_energy_light.values / mean, memory=memory)
-        label = "energy of a light disc over the mean"
+        label = "energy of a light disc / mean energy"
         reason = "none: in the long run all discs have the same mean energy"
         found.insert(0, Headline.of_mean("energy_of_light_discs", label, share, 1.0, "1", reason=reason))
     return tuple(found)

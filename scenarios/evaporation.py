@@ -130,7 +130,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
         + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")
         + (f"{left:.0f} in the pool" if left > 0.0 else f"the pool dry and {humidity:.0f} % of humidity"),
-        "the same for this number of molecules": f"{rest.temperature - 273.15:.2f} degC",
+        "the same, with the fluctuations of so few molecules": f"{rest.temperature - 273.15:.2f} degC",
         "wet-bulb temperature": _wet_bulb(settings),
         "time until vapour hits the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
         "cooling because the piston lags": f"up to {start.loss(duration):.1g} K",
@@ -147,7 +147,7 @@ def _wet_bulb(settings: Settings) -> str:
     si = settings.si
     dewpoint = float(law.dewpoint(si.humidity * law.saturation_vapor_pressure(si.temperature)))
     bulb = float(law.wet_bulb_temperature(si.pressure, si.temperature, min(dewpoint, si.temperature)))
-    return f"{bulb - 273.15:.2f} degC, of air over water with this temperature from the start"
+    return f"{bulb - 273.15:.2f} degC"
 
 
 def _settled(start: AirOverPool, settings: Settings) -> int:

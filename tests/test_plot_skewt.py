@@ -84,23 +84,23 @@ def corners(area):
     return np.concatenate(paths) if paths else np.zeros((0, 2))
 
 
-def test_cape_is_shaded_between_lfc_and_el_where_the_parcel_is_warmer_and_cin_below(run, drawings):
+def test_areas_are_shaded_where_the_parcel_is_warmer_from_lfc_to_el_and_colder_below(run, drawings):
     axes = drawings["notes"].axes[0]
-    cape, cin = areas(axes)
+    warm, cold = areas(axes)
     assert [text.get_text() for text in axes.get_legend().get_texts()[-2:]] == ["warmer", "colder"]
-    assert corners(cape)[:, 1].min() >= 200.0 - 1e-6
-    assert corners(cape)[:, 1].max() <= 820.0 + 1e-6
-    assert corners(cin)[:, 1].min() >= 820.0 - 1e-6
+    assert corners(warm)[:, 1].min() >= 200.0 - 1e-6
+    assert corners(warm)[:, 1].max() <= 820.0 + 1e-6
+    assert corners(cold)[:, 1].min() >= 820.0 - 1e-6
     pressure = run.parcel_pressure.values / 100.0
     parcel, air = (run[name].values - 273.15 for name in ("parcel_temperature", "environment_temperature"))
-    for area, sign in ((cape, 1.0), (cin, -1.0)):
-        warmer = sign * (corners(area)[:, 0] - np.interp(-corners(area)[:, 1], -pressure, air))
-        assert warmer.min() > -0.05  # straight in the logarithm of the pressure there, in the pressure here
-        assert warmer.max() > 0.3
-        assert warmer.max() <= (sign * (parcel - air)).max() + 0.05
-    assert cape.get_hatch() != cin.get_hatch()
+    for area, sign in ((warm, 1.0), (cold, -1.0)):
+        excess = sign * (corners(area)[:, 0] - np.interp(-corners(area)[:, 1], -pressure, air))
+        assert excess.min() > -0.05  # straight in the logarithm of the pressure there, in the pressure here
+        assert excess.max() > 0.3
+        assert excess.max() <= (sign * (parcel - air)).max() + 0.05
+    assert warm.get_hatch() != cold.get_hatch()
     palette = [to_rgb(colour) for colour in OKABE_ITO]
-    for area in (cape, cin):
+    for area in (warm, cold):
         assert any(np.allclose(area.get_facecolor()[0][:3], colour) for colour in palette)
 
 

@@ -188,12 +188,12 @@ def test_the_answers_tick_the_right_prediction_and_the_students_sheet_none(answe
 def test_a_scene_without_words_gets_a_sheet_from_its_card_and_headlines(own):
     sheet = sheets.worksheet(own)
     assert "Discs that nobody has written questions for. They fly {and meet}." in sheet.text
-    assert "energy of a light disc over the mean" in sheet.text
+    assert "energy of a light disc / mean energy" in sheet.text
     assert "Left out: friction. Exaggerated: nothing." in sheet.text
     assert "--seed 2 --out my_scene-B.nc" in sheet.text
     assert pdf(sheet).pages <= 2
     answered = sheets.worksheet(own, answers=True).text
-    assert "B minus A: energy of a light disc over the mean: " in answered
+    assert "B minus A: energy of a light disc / mean energy: " in answered
     assert "±" in answered
 
 

@@ -294,7 +294,7 @@ def test_the_command_says_the_points_beside_theory(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = typed("elastic-collisions", "--vary", "molecules=10,20", "--set", "duration=2s", "--jobs", "1")
     assert done.exit_code == 0, done.output
-    assert "energy of a light disc over the mean" in done.stdout
+    assert "energy of a light disc / mean energy" in done.stdout
     assert "next: atmosbox plot elastic-collisions-sweep.nc" in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
     again = typed("elastic-collisions", "--vary", "molecules=10,20", "--set", "duration=2s", "--jobs", "1")

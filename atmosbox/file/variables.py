@@ -259,7 +259,7 @@ cell_pressure | Pa | time distance height: mean | pressure of the air in a cell,
 equation of state
 horizontal_wind | m s-1 | time distance height: mean | wind from left to right
 upward_wind | m s-1 | time distance height: mean standard=upward_air_velocity | upward wind
-wind_speed | m s-1 | time: mean | root mean square of the wind without thermal noise; below zero is chance
+wind_speed | m s-1 | time: mean | root mean square of the wind, less thermal noise; by chance it may be below zero
 roll_speed | m s-1 | time: mean | root of the sum of the squared amplitudes of all rolls, without noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
 roll_amplitude | m s-1 | time mode: mean | amplitude of the upward wind of rolls

@@ -157,7 +157,7 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
         axes.add_collection(LineCollection([*streaks], colors=_BLUE, **look), autolim=False)
         entries.append(((Line2D([], [], color=_BLUE, **look),), "rain"))
     spot = axes.get_subplotspec()
-    low = spot is not None and spot.get_gridspec().ncols == 1  # as wide as the page: no room for two lines of text
+    wide = spot is not None and spot.get_gridspec().ncols == 1  # as wide as the page, and low: no room for two lines
     x, y = across[stations], way.height[stations]
     area = np.pi * (_RADIUS * theme.text * way.radius[stations]) ** 2
     colours = [_RIM if cloudy else _CLEAR for cloudy in way.cloudy[stations]]
@@ -169,9 +169,9 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
             _say(axes, warm, at, (side, 1), theme, bold=True)
         else:
             up = 0.6 if way.height[frame] <= 0.02 * way.height[-1] else 0.0  # not over the ground
-            down = 0.0 if low else 0.55
+            down = 0.0 if wide else 0.55
             _say(axes, warm, at, (1, 0), theme, bold=True, lower=-down - up)
-            _say(axes, f"{way.pressure[frame]:.0f} hPa", at, (-1 if low else 1, 0), theme, lower=down - up)
+            _say(axes, f"{way.pressure[frame]:.0f} hPa", at, (-1 if wide else 1, 0), theme, lower=down - up)
     parcel = Line2D(
         [], [], linestyle="none", marker="o", markersize=theme.text, markerfacecolor=_CLEAR, markeredgecolor=_BLUE,
         markeredgewidth=theme.line,

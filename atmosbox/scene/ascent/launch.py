@@ -67,6 +67,6 @@ def rise(
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
             "ascent" if climbs else "crossing": f"in {duration * scale.time * 1e9:.3g} ns",
             **rainy,
-            "known errors": f"theory is {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
+            "known errors": f"shift theory by {known.min():+.2g} to {known.max():+.2g} K from the adiabat",
         },
     )  # fmt: skip

@@ -173,6 +173,6 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
     answer = BOLTZMANN * law.BINDING_TEMPERATURE + flux
     error = math.sqrt(float((middle - mean) ** 2 @ share) / left)
     known = flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool)
-    reason = "molecules leave a pool of few molecules mostly while it is warm by chance"
+    reason = "a pool of few molecules evaporates more while it is warm by chance"
     name, label = "energy_of_those_that_leave", "energy of leaving molecules"
     return (Headline(name, mean, error, answer, known, reason, "J", "zJ", label),)
