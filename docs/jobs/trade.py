@@ -12,6 +12,7 @@ from atmosbox.file.netcdf import read
 from atmosbox.plot import tradeoff_figure
 from atmosbox.scene import engines
 from atmosbox.simulation import accuracy
+from atmosbox.trade.timed_run import PROFILES
 
 SCENES = ("lifting-dry", "atmosphere", "temperature-large")
 
@@ -65,6 +66,7 @@ def exact_beside(found: Findings) -> None:
         apart = {
             name: (one.bias - other.errors[name].bias, math.hypot(one.bias_se, other.errors[name].bias_se))
             for name, one in exact.errors.items()
+            if name not in PROFILES  # their error has no sign
         }
         name, (difference, error) = max(apart.items(), key=lambda each: abs(each[1][0]) / each[1][1])
         share, unit = (1.0, "K") if exact.errors[name].unit == "K" else (100.0, "%")
