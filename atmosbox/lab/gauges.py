@@ -23,8 +23,8 @@ from atmosbox.lab.theory_table import finer_at_kinks, pressures, theory_at
 from atmosbox.scene.instruments import MOMENTS, Air, Clusters, Discs, Flow, Layers, Leaving, Mixing, MoistLift, Speeds
 from atmosbox.scene.instruments.flow import modes_of_flow
 from atmosbox.scene.instruments.mixing import expected_share
-from atmosbox.scene.instruments.water import _CRITICAL
-from atmosbox.theory.equation_of_state import _CONTACT_SERIES
+from atmosbox.scene.instruments.water import HIGHEST_SATURATED
+from atmosbox.theory.equation_of_state import CONTACT_SERIES
 
 if TYPE_CHECKING:
     from atmosbox.scene.setup import Setup
@@ -147,12 +147,12 @@ def _hygrometer(prepared: Prepared, setup: Setup) -> Any:
     return Hygrometer(
         before=np.zeros(2),
         met=np.zeros(4),
-        contact=np.array(_CONTACT_SERIES.coef),
+        contact=np.array(CONTACT_SERIES.coef),
         # the volatility that the substance holds is rounded to about nine digits
         volatility=float(law.saturation_vapor_pressure(scale.temperature)) / scale.pressure * math.exp(binding),
         power=float(substance.vapour_heat_capacity - substance.heat_capacity),
         binding=binding,
-        critical=_CRITICAL / scale.temperature,
+        critical=HIGHEST_SATURATED / scale.temperature,
         mass=float(substance.mass),
         mean=np.full(leaving["width"].size, math.nan),
         error=np.full(leaving["width"].size, math.nan),

@@ -12,7 +12,7 @@ from atmosbox.engine import EqualSpeeds, Maxwell, Placed, Rotating, Scattered
 from atmosbox.engine import Start as Declared
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
-from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.core.walls import first_bath_kT
 from atmosbox.engine.start.overlap import bins_of, spheres_of
 from atmosbox.lab.kernels.starting import DRAWN, NUMBERED, Cleared, Start
 
@@ -79,9 +79,7 @@ def start_of(parcel: Any, layout: Any) -> Start:
 def _spread(parcel: Any, sides: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the spacing of molecules, and the fastest speed of walls and of a fall over it: see `natural_time`."""
     spacing = float(cbrt(math.prod(sides.tolist()) / max(parcel.number, 1)))
-    walls = parcel.arrays().gas.walls
-    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
-    fastest = [math.sqrt(float(kT) / float(parcel.mass.mean())) for law, kT in first if law == HEAT_BATH]
+    fastest = [math.sqrt(kT / float(parcel.mass.mean())) for kT in first_bath_kT(parcel.arrays().gas.walls)]
     return np.array([spacing, max([*fastest, math.sqrt(parcel.gravity * spacing)])])
 
 

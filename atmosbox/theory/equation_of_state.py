@@ -36,7 +36,7 @@ _COEFFICIENTS[:9] = (1.0, 4.0, 6.0, 2.3647684, -0.8698551, 1.1062803, -1.1014221
 _COEFFICIENTS[[10, 14, 22]] = -0.20965164, 0.10555569, -0.00872380
 _SERIES = Polynomial(_COEFFICIENTS)
 _SERIES_SLOPE = _SERIES.deriv()
-_CONTACT_SERIES = Polynomial(_COEFFICIENTS[1:] / 4.0)
+CONTACT_SERIES = Polynomial(_COEFFICIENTS[1:] / 4.0)
 
 
 def checked_packing_fraction(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
@@ -88,7 +88,7 @@ def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatAr
     phi = checked_packing_fraction(packing_fraction, form)
     if form == "carnahan-starling":
         return (1.0 - phi / 2.0) / (1.0 - phi) ** 3
-    contact: FloatArray = _CONTACT_SERIES(phi / (1.0 - phi)) / (1.0 - phi)
+    contact: FloatArray = CONTACT_SERIES(phi / (1.0 - phi)) / (1.0 - phi)
     return contact
 
 

@@ -12,7 +12,8 @@ from atmosbox.engine import Parcel, Snapshot
 from atmosbox.scene.instruments.instrument import Instrument, Readings, bins
 from atmosbox.scene.units import Scale
 
-_CRITICAL = 647.0  # K; there is no saturation above it
+HIGHEST_SATURATED = 647.0
+"""Temperature above which no saturation is computed, just below the critical one [K]."""
 
 
 def gas_kT(parcel: Parcel) -> float:
@@ -76,7 +77,7 @@ class Water:
             return Readings()
         kT, pressure, liquid_kT, vapour, liquid, rain, condensing, evaporating, *counts = np.array(self._rows).T
         count = np.array(counts, np.int64)
-        saturation = law.saturation_vapor_pressure(np.minimum(kT * scale.temperature, _CRITICAL))
+        saturation = law.saturation_vapor_pressure(np.minimum(kT * scale.temperature, HIGHEST_SATURATED))
         e = pressure * scale.pressure
         with np.errstate(divide="ignore", invalid="ignore"):
             humidity = np.where(saturation > 0.0, e / saturation, np.nan)
