@@ -76,6 +76,7 @@ def test_the_site_is_built_without_a_warning(site):
     assert (status, said.strip()) == (0, "")
 
 
+@pytest.mark.nightly  # Sphinx is not installed for the other tests
 def test_the_gallery_runs_every_scene_with_settings_that_it_has(monkeypatch):
     monkeypatch.syspath_prepend(DOCS)
     gallery = importlib.import_module("extension.gallery")
