@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.jit import quietly
 from atmosbox.engine.core.state import Tallies, Walls
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 
@@ -41,10 +42,10 @@ def residual(terms: Mapping[str, ArrayLike], start: float | None = None) -> NDAr
     [0.0, 0.0]
     """
     stores = [np.asarray(terms[name], float) for name in STORES if name in terms]
-    given = {name: np.asarray(value, float) for name, value in terms.items() if name not in STORES}
-    walls = {name: (-1,) if name == "heat_from_wall" else () for name in given}
-    each, sizes = ([made(given[name]).sum(axis=walls[name]) for name in given] for made in (np.asarray, np.abs))
-    total, entered = np.asarray(sum(stores)), np.asarray(sum(each))
+    heat = np.asarray(terms.get("heat_from_wall", np.zeros(1)), float)
+    given = [np.asarray(terms[name], float) for name in terms if name not in (*STORES, "heat_from_wall")]
+    sizes = [np.abs(heat).sum(axis=-1), *map(np.abs, given)]
+    total, entered = np.asarray(sum(stores)), np.asarray(heat.sum(axis=-1) + sum(given))
     begun = float((total - entered)[0]) if start is None else start
     # in deep wells a large kinetic and a large negative potential energy may have a small sum
     scale = np.maximum.reduce([np.abs(total), np.full(total.shape, abs(begun)), sum(sizes), *map(np.abs, stores)])
@@ -148,6 +149,7 @@ class Account(ABC):
         """Number of hits on each wall since the start."""
         return np.array(self._tallies.hits)
 
+    @quietly
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
         laws, time = enumerate(self._walls.law), self.time
