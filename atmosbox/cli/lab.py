@@ -42,8 +42,8 @@ def lab(
     """Write a page in which a scene runs: the engine itself, in the browser.
 
     The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed given
-    here. Its numbers are those of `atmosbox run` with the same settings and --engine exact. Its knobs act at once; of
-    other settings it offers as many values as fit into the page. With `atmosbox live`, more settings can be changed.
+    here. Its numbers are those of `atmosbox run` with the same settings and --engine exact. Its knobs act at once;
+    other settings have a few values to choose from. With `atmosbox live`, more settings can be changed.
     """
     if every:
         from atmosbox.simulation.link import check_nothing_changes

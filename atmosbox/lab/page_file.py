@@ -28,7 +28,9 @@ from atmosbox.scene.conversion import phrase
 from atmosbox.simulation.preparation import Prepared, prepare
 
 _MOST_BYTES = 231_000
-"""Largest size of the module and the starts of a page, compressed [bytes]: the page then stays below 1.5 MB."""
+"""Largest size of the module and the starts of a page, compressed [bytes]."""
+_FOR_PRESETS = 380_000
+"""How many bytes more the presets of a scene may take: the page then stays below 1.5 MB."""
 AS_WRITTEN = "as the page was written"
 """Name of the choice that leads back from a preset to the settings of the page."""
 _TIMES = (0.5, 2.0, 0.25, 4.0)
@@ -90,8 +92,8 @@ def lab_starts(prepared: Prepared, most: int, progress: Callable[[float, str], N
 
     The other starts have half or twice as many molecules, the presets of the scene, smaller or larger molecules, then
     both together, and larger changes. Only boxes that run with the same kernels are offered, and module and starts have
-    at most ``most`` bytes; the first start is always included, and is the only one if this is 0. ``progress`` is called
-    with the share of the page that is filled and the name of the present step.
+    at most ``most`` bytes, or `_FOR_PRESETS` more with the presets; the first start is always included, and is the only
+    one if this is 0. ``progress`` is called with the share of the page that is filled and the name of the present step.
 
     >>> found, _ = lab_starts(prepare("elastic-collisions", {"molecules": 10}), 33_000, lambda share, word: None)
     >>> [start.key for start in found[:2]]
@@ -111,7 +113,7 @@ def lab_starts(prepared: Prepared, most: int, progress: Callable[[float, str], N
         is_seed_alone = values.keys() == {"seed"}
         if is_seed_alone and not seeds_fit:  # those of other seeds are as large
             continue
-        progress(1.0 - room / whole, "making other starts")
+        progress(min(1.0 - room / whole, 1.0), "making other starts")
         try:
             plan, memory, its_box = lab_plan(prepare(prepared.scene, changed | values, engine=prepared.engine))
         except AtmosboxError:  # not every scene can run with these settings
@@ -121,7 +123,7 @@ def lab_starts(prepared: Prepared, most: int, progress: Callable[[float, str], N
         if its_box.module != box.module:
             continue
         size = len(gzip.compress(start.stored(), 9))
-        if size > room:
+        if size > room + (_FOR_PRESETS if title else 0):
             seeds_fit &= not is_seed_alone
             missed += plan["seeded"]  # starts that the page places itself all have about the same size
             continue

@@ -1,6 +1,8 @@
 """The page as one HTML document that contains the libraries, our scripts, and the data of the runs."""
 
+import base64
 import functools
+import gzip
 import html
 import json
 import tomllib
@@ -125,7 +127,7 @@ def _document(
 ) -> str:
     """Return the HTML document that contains some data."""
     libraries = ("three", "uplot", "lean-qr") if entry == "lab" else ("three", "uplot")
-    scripts = [_module(name, packaged("vendor", "three", name)) for name in _THREE]
+    scripts = [_packed_module(name) for name in _THREE]
     scripts += [_module("qr.mjs", packaged("vendor", "lean-qr", "nano.mjs"))] if entry == "lab" else []
     scripts += [_module(name, packaged("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
     first = "en" if language == "auto" else language
@@ -162,6 +164,13 @@ def packaged(*place: str) -> str:
 def _module(name: str, text: str) -> str:
     """Return the element of a script that ``boot.js`` turns into a module."""
     return f'<script type="text/plain" data-module="{name}">{_inline(text)}</script>'
+
+
+@functools.cache
+def _packed_module(name: str) -> str:
+    """Return the same for a script of the library three, compressed: it takes a third of the room."""
+    packed = base64.b64encode(gzip.compress(packaged("vendor", "three", name).encode(), 9, mtime=0)).decode("ascii")
+    return f'<script type="text/plain" data-module="{name}" data-packed>{packed}</script>'
 
 
 def _block(name: str, kind: str, text: str) -> str:

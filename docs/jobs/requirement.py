@@ -214,7 +214,7 @@ def moist() -> list[list[str]]:
         ["ice", f"if all {rounded(1000.0 * liquid)} g/kg of liquid froze at {top / 100.0:.0f} hPa and "
          f"{rounded(end - 273.15)} °C, at {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
          f"{rounded(frozen)} K warmer"],
-        ["rain (off by default)", f"the pseudo-adiabat ends {rounded(end - float(pseudo.temperature[0]))} K colder "
+        ["rain, where it is off", f"the pseudo-adiabat ends {rounded(end - float(pseudo.temperature[0]))} K colder "
          "than the reversible one; a run with `rain=on` ends nearly as cold"],
         ["the weight of the droplets", f"lowers the buoyancy as if the parcel were {rounded(end * liquid)} K "
          "colder; the temperature stays the same"],

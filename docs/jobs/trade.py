@@ -74,7 +74,7 @@ def exact_beside(found: Findings) -> None:
             [scene, f"`{exact.label}`", f"{exact.members} and {other.members}", rounded(exact.cost / other.cost),
              f"{table.labels[name]}: {rounded(share * difference)} ± {rounded(share * error, 1)} {unit}"]
         )  # fmt: skip
-    head = ["scene", "compared at", "runs", "time of exact / dsmc", "largest difference, relative to its error"]
+    head = ["scene", "compared at", "runs", "time of exact / dsmc", "most significant difference"]
     found.table(head, rows)
 
 

@@ -20,6 +20,20 @@ USUAL = ("temperature", "lifting-sounding", "evaporation")
 FAULTS = Path(__file__).with_name("layout_faults.js").read_text(encoding="utf-8")
 
 
+def drawn(page, size=None):
+    """Give a page a size, and wait for four pictures: a graph gets its size in one, and its texts in the next."""
+    if size:
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        page.wait_for_function("(width) => innerWidth === width", arg=size[0])
+    page.evaluate(
+        """() => new Promise((done) => {
+             let left = 4;
+             const next = () => { if (left--) requestAnimationFrame(next); else done(); };
+             next();
+           })"""
+    )
+
+
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     """Return a function that writes the page of a scene, with few molecules, once."""
@@ -71,7 +85,7 @@ def speak(page, language):
            }""",
         language,
     )
-    page.wait_for_timeout(300)
+    drawn(page)
 
 
 @pytest.mark.parametrize("scene", [_tier(scene) for scene in scenarios.names()])
@@ -83,12 +97,11 @@ def test_on_every_screen_nothing_is_cut_off_or_lies_on_another_and_all_can_be_re
         for theme, sizes in (("light", SIZES), ("dark", SIZES[1:2])):
             page.evaluate("(to) => { document.documentElement.dataset.theme = to; }", theme)
             for width, height in sizes:
-                page.set_viewport_size({"width": width, "height": height})
-                page.wait_for_timeout(500)
+                drawn(page, (width, height))
                 faults = page.evaluate(FAULTS)
                 if page.locator("#menu").is_visible():
                     page.click("#menu")
-                    page.wait_for_timeout(200)
+                    drawn(page)
                     assert page.locator("#save").is_visible()
                     faults += [f"menu: {each}" for each in page.evaluate(FAULTS) if not each.startswith("the ")]
                     page.click("#menu")
@@ -102,8 +115,7 @@ def test_a_prediction_can_be_drawn_on_every_screen(opened, scene):
     speak(page, "de")
     page.locator("#lesson .choices button").nth(3).click()
     for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_timeout(400)
+        drawn(page, (width, height))
         page.locator(".asked").scroll_into_view_if_needed()
         boxes = [each.bounding_box() for each in page.locator(".handle").all()]
         centres = np.array([(each["x"] + each["width"] / 2, each["y"] + each["height"] / 2) for each in boxes])
@@ -118,8 +130,7 @@ def test_a_prediction_can_be_drawn_on_every_screen(opened, scene):
     page.locator(".handle").first.press("PageUp")
     page.locator(".asked .main").click()
     for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_timeout(400)
+        drawn(page, (width, height))
         found += [f"drawn {width} x {height}: {fault}" for fault in page.evaluate(FAULTS)]
     assert not found, "\n".join(found)
 

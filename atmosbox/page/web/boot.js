@@ -2,14 +2,18 @@
 //
 // A page that was opened from disk may not import a module from another file, but it may import a blob that it made
 // itself. So each script becomes a blob, and the names of its imports are replaced by the addresses of earlier blobs.
-(() => {
+// Libraries are compressed, and in base64.
+(async () => {
   "use strict";
   const address = { };
   const known = (name) => address[name] ?? address[name.replace(/^\.\//, "")];
   const imports = /(\bfrom\s*|\bimport\s*)(["'])([\w./-]+)\2/g;
+  const unpacked = (text) => new Response(new Blob([Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0))])
+    .stream().pipeThrough(new DecompressionStream("gzip"))).text();
   for (const script of document.querySelectorAll("script[data-module]")) {
     const name = script.dataset.module;
-    const text = script.textContent.replace(imports, (all, word, quote, wanted) =>
+    const source = script.hasAttribute("data-packed") ? await unpacked(script.textContent) : script.textContent;
+    const text = source.replace(imports, (all, word, quote, wanted) =>
       known(wanted) ? `${word}"${known(wanted)}"` : all);
     address[name] = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
     if (name === "three.module.min.js") address.three = address[name];
