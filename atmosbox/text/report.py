@@ -218,7 +218,7 @@ def comparison_lines(files: Sequence[str], names: Naming, numbers: Sequence[Comp
         return [*made, "The files have no number in common: atmosbox check shows those of each."]
     rows, pair = [], len(files) == 2
     for each in numbers:
-        what = each.label + ("" if each.unit in ("", "1") else f" [{each.unit}]")
+        what = each.label + ("" if each.unit in ("", "1") else f" [{slashed(each.unit)}]")
         if pair:
             rows.append([what, _said(each, 0), _said(each, 1), _changed(each, 1), _by_theory(each, 1)])
             continue
