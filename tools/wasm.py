@@ -36,9 +36,8 @@ from atmosbox.simulation.preparation import prepare
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint,+mutable-globals,+multivalue,+simd128"
 STACK = 65_536
-APART = ("settle",)
-APART_IN_MIST = ("settle", "hit", "meet", "_touch", "_emit")
-"""Kernels that stay functions of their own and are not merged into the loop over events.
+APART = ("settle", "hit", "meet", "_touch", "_emit")
+"""Kernels that stay functions of their own and are not merged into the loop over events: without a mist, the first.
 
 In a function of more than 8,192 values Chromium's compiler uses a simpler way to assign the processor's registers: with
 these kernels inside, the loop of an ascent is such a function and takes a sixth to a quarter longer.
@@ -76,9 +75,13 @@ def object_of(text: str, native: str, export: str, target: llvm.TargetMachine, a
 
 
 def apart(text: str, alone: tuple[str, ...]) -> str:
-    """Return code in which some kernels are not merged into those that call them."""
-    names = "|".join(f"{len(name)}{name}" for name in alone)  # as in a compiled name: its length before each part
-    return re.sub(rf'^(define [^@]*@"?[^"(]*[a-z_](?:{names})B.*\))[^()]*\{{$', r"\1 noinline {", text, flags=re.M)
+    """Return code in which some kernels are not merged into those that call them; each of them must be in it."""
+    for name in alone:  # in a compiled name the length of each part precedes it
+        head = rf'^(define [^@]*@"?[^"(]*[a-z_]{len(name)}{name}B.*\))[^()]*\{{$'
+        text, found = re.subn(head, r"\1 noinline {", text, flags=re.M)
+        if not found:
+            raise SystemExit(f"no kernel is called {name}: put APART right")
+    return text
 
 
 def with_root(text: str) -> str:
@@ -140,7 +143,7 @@ def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]
 def module_of(modes: Modes, wells: bool, types: dict[str, tuple]) -> bytes:
     """Return the module for one set of modes."""
     target = machine()
-    alone = APART_IN_MIST if modes.phases and not modes.drops else APART
+    alone = APART if modes.phases and not modes.drops else APART[:1]
     with LlvmText() as source:
         works = kernels(modes, wells=wells)
         return link({name: object_of(*source.of(works[name], types[name]), name, target, alone) for name in types})

@@ -1,5 +1,7 @@
 """The plan of a page: the command that it saves starts exactly the same run."""
 
+import json
+import re
 import shlex
 
 import numpy as np
@@ -76,6 +78,14 @@ def test_the_seed_of_a_declared_start_decides_nothing_but_the_molecules(scene):
 @pytest.mark.parametrize("scene", ["diffusion", "evaporation", "lifting-dry", "lifting-moist", "lifting-sounding"])
 def test_a_page_of_as_many_molecules_as_a_run_has_is_no_larger_than_promised(scene):
     assert len(lab_text(prepare(scene, {}, engine="exact"), others=False).encode()) < 1_500_000
+
+
+@pytest.mark.nightly
+def test_the_page_of_convection_has_room_for_its_presets():
+    text = lab_text(prepare("convection", {}, engine="exact"))
+    offered = [key for key, *_ in json.loads(re.search(r'id="starts">(.*?)</script>', text)[1])]
+    assert [key.partition(":")[0] for key in offered[1:]] == ["Inversion", "Land and sea", "Mixed air at the start"]
+    assert len(text.encode()) < 1_500_000
 
 
 def test_theory_that_changes_with_time_goes_on_as_theory_does():

@@ -65,6 +65,13 @@ def test_without_webgl_a_sentence_stands_where_the_box_would_and_all_else_works(
     until(page, "Number(document.body.dataset.time) > 0.015")
 
 
+def test_a_browser_that_is_too_old_is_told_so(new_tab, site):
+    tab = new_tab()
+    tab.add_init_script("delete window.DecompressionStream")
+    tab.goto(site("warm"))
+    assert words("en")["page"]["cannot_start"] in tab.locator(".failure").inner_text()
+
+
 def test_arrows_step_through_the_frames_and_change_the_pace(opened):
     page = opened("warm")
     page.keyboard.press("ArrowRight")
