@@ -5,6 +5,13 @@ import { icon } from "./transport.js";
 import { phrase, spell, word } from "./words.js";
 
 const SLOWEST = 0.25, FASTEST = 16;
+const EXACT = 15; // digits of a number of the engine
+
+// How many digits of the energy are those of the start and of what was added, or by how much it is off.
+function energy(share) {
+  const digits = Math.min(EXACT, Math.floor(-Math.log10(share)));
+  return digits > 2 ? word("energy_conserved", { number: digits }) : word("energy_off", { number: figure(100 * share, 2) });
+}
 
 export class Player {
   // `files` gets the field of the seed and Save; `say(message)` sends a message to the engine, `tell(text)` one to the reader.
@@ -68,7 +75,7 @@ export class Player {
     const vitals = busy ? [phrase(busy)] : [
       molecules !== undefined && word(this.particle === "disc" ? "discs" : "molecules", { number: molecules }),
       Number.isFinite(rate) && playing && word("rate", { number: figure(rate, 2) }),
-      Number.isFinite(ledger) && word("energy_off", { number: figure(ledger, 2) }),
+      Number.isFinite(ledger) && energy(ledger),
       finished && word("over"),
     ];
     this.part("vitals").textContent = vitals.filter(Boolean).join(" · ");
