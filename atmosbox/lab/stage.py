@@ -123,7 +123,8 @@ def lab_lesson(prepared: Prepared, series: set[str], setup: Setup, panels: list[
         by = to_si(1.0, setup.time_unit) if goal["name"] == _TIME else 1.0  # other variables of the page are in SI
         scaled = {"target": goal["target"] / by, "within": goal["within"] / by, "factor": goal["factor"] * by}
         reach.append(goal | scaled)
-    return found | {"task": {**task, "reach": reach}}
+    # in an ascent values change steadily, and a mean would lag behind
+    return found | {"task": {**task, "reach": reach, "steady": setup.ends}}
 
 
 def _drawing(wanted: Mapping[str, Any], panels: list[dict[str, Any]], setup: Setup) -> dict[str, Any] | None:

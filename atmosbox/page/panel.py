@@ -11,6 +11,9 @@ from atmosbox.file.variables import known
 from atmosbox.scene.conversion import spelled
 from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 
+_ALONG = tuple("parcel_pressure" if name == "environment_pressure" else name for name in ATMOSPHERE_VARIABLES)
+"""On a page the picture of an ascent has the pressure of the parcel, as its barometer has."""
+
 
 def plain(values: ArrayLike, figures: int = 7) -> list[float | None]:
     """Return numbers as JSON can hold them, with some significant digits; numbers that are not finite become null.
@@ -43,7 +46,7 @@ def names(panels: Iterable[Panel]) -> tuple[str, ...]:
     graphs = [panel for panel in panels if panel.kind != "discs"]
     wanted = [name for panel in graphs for name in panel.variables]
     if any(panel.kind == "atmosphere" for panel in graphs):
-        wanted += ATMOSPHERE_VARIABLES
+        wanted += _ALONG
     return tuple(dict.fromkeys(wanted))
 
 
@@ -77,7 +80,7 @@ def panel_record(
         "note": panel.note,
         "across": panel.measured_across,
         "averages": panel.averages,
-        **({"along": ATMOSPHERE_VARIABLES} if panel.kind == "atmosphere" else {}),
+        **({"along": _ALONG} if panel.kind == "atmosphere" else {}),
         "sentences": list(sentences),
         "marks": marks or {},
         "start": list(panel.start),

@@ -545,6 +545,9 @@ TASKS = {
     "attraction": ({}, {"temperature": 70}, 150),
 }
 """For each scene the settings, the knobs to turn after 10 frames, and the frames after which its task is done."""
+FLUCTUATING = {"temperature", "temperature-large", "atmosphere", "convection"}
+FLUCTUATING |= {"evaporation", "condensation", "attraction"}
+"""In these scenes a task is about a mean over time."""
 
 
 @pytest.mark.parametrize(
@@ -568,7 +571,9 @@ def test_a_task_is_done_with_the_controls_of_the_page_and_the_page_says_so(lab, 
             page.locator(f"input[name={name}] + input").press("Enter")
     shown.ask(type="frames", value=frames)
     page.locator(".task.reached").wait_for(timeout=120_000)
-    assert page.locator(".task .done").inner_text().startswith("Reached: ")
+    said = page.locator(".task .done").inner_text()
+    assert said.startswith("Reached: ")
+    assert ("mean of the last" in said) == (scene in FLUCTUATING)
 
 
 def test_a_question_is_answered_in_the_language_that_is_chosen_and_the_box_goes_on(lab):
@@ -614,6 +619,12 @@ def test_a_thermometer_tells_its_scatter_and_why_and_means_stand_beside_theory(l
     ).groups()
     assert float(mean) == pytest.approx(25.0, abs=4.0 * float(error))
     assert 0.2 < float(error) < 3.0
+    _, table = shown.table()
+    now, lasted = re.fullmatch(
+        r"Now: ([\d.]+) hPa \(mean of the last ([\d.]+) ns\)\.", page.locator(".verdict").inner_text()
+    ).groups()
+    assert float(now) == pytest.approx(table["air_pressure"][-100:].mean() / 100.0, abs=0.6)
+    assert float(lasted) == pytest.approx(table["elapsed_time"][-1] - table["elapsed_time"][-101], rel=0.03)
     shown.ask(type="set", name="temperature", value=225.0)
     shown.ask(type="frames", value=900)
     page.locator(".graph .sentences", has_text="mean since the last change (theory 225").wait_for(timeout=20_000)
@@ -650,6 +661,36 @@ def _drawn_anew(page):
     page.wait_for_function("window.texts.size > 5")
     page.wait_for_timeout(400)
     return page.evaluate("[...window.texts]")
+
+
+@pytest.mark.parametrize(
+    "scene",
+    ["lifting-moist", *(pytest.param(name, marks=pytest.mark.nightly) for name in ("lifting-dry", "mountains"))],
+)
+def test_at_the_end_of_an_ascent_gauges_task_and_picture_show_its_last_frame(lab, scene):
+    shown = lab(scene, SMALL[scene][0])
+    page = shown.page
+    page.evaluate(KEEPS_TEXTS)
+    shown.ask(type="pace", value=16)
+    page.click("#play")
+    page.locator("#vitals", has_text="the run is over").wait_for(timeout=60_000)
+    page.wait_for_timeout(400)
+    _, table = shown.table()
+    kelvin, pascal, metre = (table[f"parcel_{name}"][-1] for name in ("temperature", "pressure", "height"))
+
+    def near(text, value, unit, decimals):
+        """Return whether a text is the value with these decimals, or the next one, because halves may be rounded up."""
+        told = re.fullmatch(rf"(−?[\d.]+) {unit}", text)
+        return told and abs(float(told[1].replace("−", "-")) - value) < 0.51 * 10.0**-decimals
+
+    read = [page.locator(f".{name}").inner_text().split("\n") for name in ("thermometer", "barometer")]
+    assert near(" ".join(read[0][1:]), kelvin - 273.15, "°C", 1)
+    assert near(" ".join(read[1][1:]), pascal / 100.0, "hPa", 0)
+    said = page.locator(".verdict").inner_text().removeprefix("Now: ").removesuffix(".")
+    assert near(said, metre / 1000.0, "km", 2) if scene == "mountains" else near(said, kelvin - 273.15, "°C", 1)
+    texts = _drawn_anew(page)
+    for value, unit, decimals in ((kelvin - 273.15, "°C", 0), (pascal / 100.0, "hPa", 0), (metre / 1000.0, "km", 1)):
+        assert any(near(text, value, unit, decimals) for text in texts), (value, texts)
 
 
 def test_named_guides_are_hidden_while_a_prediction_is_drawn_and_once_a_knob_is_turned(lab):

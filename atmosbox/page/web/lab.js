@@ -91,7 +91,7 @@ class Lab {
     this.walls = state.walls ?? null;
     find("story").textContent = story(record.story);
     find("panel").hidden = !controls?.length && !lesson?.presets.length;
-    this.lesson.offer(record.scene, lesson);
+    this.lesson.offer(record.scene, lesson, record.time.unit);
     this.prediction.offer(this.graphs, lesson, prediction);
     const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
       record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
@@ -116,11 +116,11 @@ class Lab {
     if (!playing && time === 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.prediction.play();
   }
 
-  // Show the state of the box, which comes at least twice a second.
+  // Show the state of the box, which comes four times a second. Gauges are shown with the graphs, see `look`.
   state(told) {
     this.player.show(told);
     this.lesson.show(told);
-    if (told.gauges) this.gauges.show(told.gauges, told.molecules);
+    if (told.gauges) this.readings = told;
     if (told.walls) {
       this.walls = told.walls;
       this.stage?.warm(told.walls);
@@ -168,9 +168,10 @@ class Lab {
   look() {
     if (!this.stale || !this.graphs) return;
     this.stale = false;
+    if (this.readings) this.gauges.show(this.readings.gauges, this.readings.molecules);
     this.graphs.refresh();
     if (this.film.frames.length) {
-      this.graphs.at(this.film.end);
+      this.graphs.at(Math.max(this.film.end, this.numbers.get("elapsed_time")?.at(-1) ?? 0)); // which is rounded
       find("status").textContent = this.sheet.story();
       this.caption({ walls: this.walls, length: this.film.frames.at(-1).length });
     }

@@ -4,7 +4,7 @@
 // are, and holds the factors from the units of the engine to SI and the tables of the curves of theory.
 
 const PERIOD = 1000 / 60, SHARE = 0.8; // ms between two pictures, and the share of that time for the engine
-const MEASURE = 250, STATE = 500; // ms between two messages with measurements, and between two with the state of the box
+const MEASURE = 250; // ms between two messages with measurements and the state of the box
 const EVENTS = 4000; // collisions and other events between two readings of the clock
 const FRAMES = 40; // of which a gauge knows the scatter
 const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
@@ -59,7 +59,7 @@ class Box {
     machine.call("begin_averages_anew");
     Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], pictures: [], inside: false, coming: [],
       past: this.past.filter(({ start }) => start !== undefined),
-      fastest: this.plan.fastest, trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
+      fastest: this.plan.fastest, trace: new Trace(), drawn: 0, measured: 0, fresh: false, arrays: null });
     this.pending.clear();
     this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
   }
@@ -100,7 +100,7 @@ class Box {
       const mean = seen.reduce((sum, value) => sum + value, 0) / seen.length;
       const steady = !this.plan.ends && this.frame - this.since >= FRAMES + this.plan.settle && seen.length === FRAMES;
       const measured = steady ? Math.sqrt(seen.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (FRAMES - 1)) : NaN;
-      return [{ name, unit, value: Number((seen.at(-1) * factor + offset).toPrecision(4)), spread: brief((last[`${variable}_noise`] ?? measured) * factor) }];
+      return [{ name, unit, value: Number((seen.at(-1) * factor + offset).toPrecision(6)), spread: brief((last[`${variable}_noise`] ?? measured) * factor) }];
     });
   }
 
@@ -175,14 +175,16 @@ class Box {
     this.pass(this.now + passed * this.plan.rate * this.pace, now + SHARE * PERIOD);
     this.look();
     this.pictures = this.pictures.filter((time) => time > now - 2000).concat(now);
-    if (now - this.measured > MEASURE) {
-      this.tell();
+    if (now - this.measured > MEASURE || !this.playing) {
+      this.report();
       this.measured = now;
     }
-    if (now - this.stated > STATE || !this.playing) {
-      say(this.state());
-      this.stated = now;
-    }
+  }
+
+  // Graphs, gauges and task show the same moment.
+  report() {
+    this.tell();
+    say(this.state());
   }
 
   // Let the scale of speeds follow the temperature of gas and walls; it changes only if the box is too warm or too cold.
@@ -257,7 +259,6 @@ class Box {
       this.playing = false;
       this.pass(this.now + STEP * this.plan.rate * this.pace, Infinity);
       this.look();
-      this.tell();
     } else if (type === "reset") this.reseed(message.seed ?? this.seed);
     else if (type === "pace") this.pace = Math.min(Math.max(Number(value) || 1, SLOWEST), FASTEST);
     else if (type === "set") this.turn(name, value);
@@ -269,14 +270,12 @@ class Box {
       Object.assign(this.trace, { sent: 0, reset: true });
       this.fresh = true;
       this.greet();
-      this.tell();
     } else if (type === "watched") this.watched = message.is;
     else if (type === "frames") {
       while (this.frame < value && !this.failed) this.pass(this.moment(), Infinity);
       this.look();
-      this.tell();
     } else if (type === "digest") this.digest();
-    say(this.state());
+    this.report();
   }
 
   // Begin the box of a start: in a file the start's key, on a page that Python serves all settings. Return whether it begins.

@@ -1,18 +1,18 @@
 // What a scene asks of a class: a question to predict, and a task; besides, named settings to try, and undo.
 
-import { figure, spelled } from "./figure.js";
+import { figure, spelled, withUnit } from "./figure.js";
 import { language, numbers, phrase, word } from "./words.js";
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
 const written = (text) => numbers(phrase(text)).replace(/(^|[\s(])-(?=\d)/g, "$1−");
 
-// The mean of the last frames before a place, and whether it is near the goal in both halves of them: what only passes
-// the goal on its way is not there.
-function stands({ target, within }, series, end, frames) {
+// Whether the means over both halves of the last frames before a place are near the goal: what only passes the goal on
+// its way is not there. The value is the mean of all these frames, or the last one if it changes steadily.
+function stands({ target, within }, series, end, frames, steady) {
   const mean = (from, to) => series.slice(from, to).reduce((sum, value) => sum + value, 0) / (to - from);
   const middle = end - Math.floor(frames / 2), begin = end - frames;
   const halves = frames > 1 ? [mean(begin, middle), mean(middle, end)] : [series[end - 1]];
-  return { value: mean(begin, end), near: halves.every((each) => Math.abs(each - target) <= within) };
+  return { value: steady ? series[end - 1] : mean(begin, end), near: halves.every((each) => Math.abs(each - target) <= within) };
 }
 
 export class Lesson {
@@ -22,10 +22,10 @@ export class Lesson {
     Object.assign(this, { parent, tries, say, answered, answer: null, told: "", scene: "" });
   }
 
-  // Show what a scene offers. A new box begins: its task has not been done yet.
-  offer(scene, { presets = [], predict = null, task = null } = {}) {
+  // Show what a scene offers, whose times have some unit. A new box begins: its task has not been done yet.
+  offer(scene, { presets = [], predict = null, task = null } = {}, unit = "") {
     if (scene !== this.scene) this.answer = null;
-    Object.assign(this, { scene, task, reached: false, judged: 0 });
+    Object.assign(this, { scene, task, unit, reached: false, judged: 0 });
     const told = JSON.stringify([language, presets, predict, task]);
     if (told !== this.told) {
       this.back = make("button", { type: "button", id: "undo", textContent: `↶ ${word("undo")}`, title: word("undo_title"), onclick: () => this.undo() });
@@ -102,9 +102,11 @@ export class Lesson {
     if (this.back && undo !== undefined) this.back.disabled = !undo;
   }
 
-  #show(values) {
+  // Show values, which are means over some time unless it is 0.
+  #show(values, time = 0) {
     const { reach } = this.task;
-    const told = values.map((value, goal) => `${figure(value * reach[goal].factor + reach[goal].offset)} ${spelled(reach[goal].unit)}`.trim()).join(", ");
+    const now = values.map((value, goal) => `${figure(value * reach[goal].factor + reach[goal].offset)} ${spelled(reach[goal].unit)}`.trim()).join(", ");
+    const told = time ? word("mean_of", { values: now, time: withUnit(time, this.unit, 2) }) : now;
     const text = (key) => (told ? word(key, { values: told }) : "");
     this.done.textContent = this.reached ? text("reached") : "";
     this.now.textContent = this.reached ? "" : text("not_yet");
@@ -114,14 +116,14 @@ export class Lesson {
   // Check whether the measurements have come to the goal of the task.
   judge(values) {
     if (!this.task || this.reached) return;
-    const { reach, frames } = this.task;
+    const { reach, frames, steady } = this.task, times = values.get("elapsed_time");
     const series = reach.map(({ name }) => values.get(name) ?? []);
     const count = Math.min(...series.map(({ length }) => length));
     if (count < this.judged) this.judged = 0;
     for (let end = Math.max(this.judged + 1, frames); end <= count && !this.reached; end += 1) {
-      const found = reach.map((goal, place) => stands(goal, series[place], end, frames));
+      const found = reach.map((goal, place) => stands(goal, series[place], end, frames, steady));
       this.reached = found.every(({ near }) => near);
-      if (this.reached || end === count) this.#show(found.map(({ value }) => value));
+      if (this.reached || end === count) this.#show(found.map(({ value }) => value), steady || frames === 1 ? 0 : times[end - 1] - (times[end - 1 - frames] ?? 0));
     }
     this.judged = count;
   }
