@@ -27,6 +27,7 @@
     const own = [...node.childNodes].filter((each) => each.nodeType === 3 && each.textContent.trim());
     const frame = node.getBoundingClientRect(), control = node.matches("button, input, select, summary");
     if ((own.length || control) && frame.width && (frame.left < -1 || frame.right > innerWidth + 1)) found.push(`outside: ${name(node)}`);
+    if (node.matches("input[type=range]") && frame.width < (innerWidth < 500 ? 150 : 80)) found.push(`a slider is ${frame.width} wide: ${node.name}`);
     const range = document.createRange();
     for (const each of own) {
       range.selectNodeContents(each);
@@ -65,6 +66,11 @@
     const { height } = graph.getBoundingClientRect();
     if (graph.checkVisibility() && height < 110) found.push(`a graph is ${height} high: ${name(graph.closest(".graph"))}`);
   }
+
+  // all graphs are seen at once, but for the name of the last axis
+  const graphs = document.querySelector("#graphs");
+  const roomy = innerWidth > 1000 && innerHeight > 760 && !document.querySelector(".predicted, #controls [open]");
+  if (roomy && graphs.scrollHeight > graphs.clientHeight + 24) found.push(`the graphs are cut at ${graphs.clientHeight} of ${graphs.scrollHeight}`);
 
   const box = document.querySelector(".box").getBoundingClientRect(), bar = document.querySelector("footer").getBoundingClientRect();
   if (Math.min(box.width, box.height) < 120) found.push(`the box is ${box.width} x ${box.height}`);

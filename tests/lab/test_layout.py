@@ -14,7 +14,7 @@ from atmosbox.simulation.preparation import prepare
 SIZES = ((1280, 800), (1024, 768), (1920, 1080), (390, 844), (844, 390), (640, 400))
 """Projectors, a phone upright and on its side, and 1280 x 800 at 200 %."""
 FEW = {"atmosphere": 1000, "lifting-dry": 300, "lifting-moist": 400, "lifting-sounding": 300, "mountains": 400}
-FEW |= {"condensation": 300, "evaporation": 400, "attraction": 300, "convection": 500}
+FEW |= {"condensation": 300, "evaporation": 400, "attraction": 300}
 USUAL = ("temperature", "lifting-sounding", "evaporation")
 
 FAULTS = Path(__file__).with_name("layout_faults.js").read_text(encoding="utf-8")
@@ -43,7 +43,7 @@ def written(tmp_path_factory):
         if scene not in made:
             few = {"molecules": FEW[scene]} if scene in FEW else {}
             prepared = prepare(scene, SCENES[scene] | few, engine="exact")
-            others = scene == "elastic-collisions"
+            others = scene in ("elastic-collisions", "convection")  # with presets
             made[scene] = save_lab(prepared, folder / f"{scene}.html", others=others).as_uri()
         return made[scene]
 
