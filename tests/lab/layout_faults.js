@@ -68,9 +68,10 @@
   }
 
   // all graphs are seen at once, but for the name of the last axis
-  const graphs = document.querySelector("#graphs");
+  const graphs = document.querySelector("#graphs"), tools = document.querySelector("#tools");
   const roomy = innerWidth > 1000 && innerHeight > 760 && !document.querySelector(".predicted, #controls [open]");
   if (roomy && graphs.scrollHeight > graphs.clientHeight + 24) found.push(`the graphs are cut at ${graphs.clientHeight} of ${graphs.scrollHeight}`);
+  if (innerWidth > 1200 && document.querySelector("#colours").hidden && tools.clientHeight > 1.5 * document.querySelector("#theme").offsetHeight) found.push("the tools take two rows");
 
   const box = document.querySelector(".box").getBoundingClientRect(), bar = document.querySelector("footer").getBoundingClientRect();
   if (Math.min(box.width, box.height) < 120) found.push(`the box is ${box.width} x ${box.height}`);
