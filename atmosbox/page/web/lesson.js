@@ -1,6 +1,6 @@
 // What a scene asks of a class: a question to predict, and a task; besides, named settings to try, and undo.
 
-import { figure, spelled, withUnit } from "./figure.js";
+import { spelled, withUnit } from "./figure.js";
 import { language, numbers, phrase, word } from "./words.js";
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
@@ -13,6 +13,12 @@ function stands({ target, within }, series, end, frames, steady) {
   const middle = end - Math.floor(frames / 2), begin = end - frames;
   const halves = frames > 1 ? [mean(begin, middle), mean(middle, end)] : [series[end - 1]];
   return { value: steady ? series[end - 1] : mean(begin, end), near: halves.every((each) => Math.abs(each - target) <= within) };
+}
+
+// A value with the decimals that matter for its goal.
+function reading(value, { within, factor, offset, unit }) {
+  const decimals = Math.max(0, 1 - Math.floor(Math.log10(within * factor)));
+  return `${numbers((value * factor + offset).toFixed(Math.min(decimals, 20)).replace("-", "−"))} ${spelled(unit)}`.trim();
 }
 
 export class Lesson {
@@ -105,9 +111,9 @@ export class Lesson {
   // Show values, which are means over some time unless it is 0.
   #show(values, time = 0) {
     const { reach } = this.task;
-    const now = values.map((value, goal) => `${figure(value * reach[goal].factor + reach[goal].offset)} ${spelled(reach[goal].unit)}`.trim()).join(", ");
-    const told = time ? word("mean_of", { values: now, time: withUnit(time, this.unit, 2) }) : now;
-    const text = (key) => (told ? word(key, { values: told }) : "");
+    const now = values.map((value, goal) => reading(value, reach[goal])).join(", ");
+    const said = time ? word("mean_of", { values: now, time: withUnit(time, this.unit, 2) }) : now;
+    const text = (key) => (said ? word(key, { values: said }) : "");
     this.done.textContent = this.reached ? text("reached") : "";
     this.now.textContent = this.reached ? "" : text("not_yet");
     this.now.closest(".task").classList.toggle("reached", this.reached);
