@@ -237,18 +237,18 @@ def run(
     duration: float | str = 1000.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Why warm air rises: between a warm floor and a cold ceiling air begins to turn over.
+    r"""Why warm air rises: between a hot floor and a cold ceiling air begins to turn over.
 
     case: which box to run; it sets the other defaults; rolls or inversion or sea-breeze or stable
     molecules: number of molecules; 50 to 1000000
-    floor_temperature [degC]: temperature of the floor, or of the warm side; -270 degC to 2000 degC
-    ceiling_temperature [degC]: temperature of the ceiling, or of the cold side; -270 degC to 2000 degC
+    floor_temperature [degC]: temperature of the floor, or of the left side; -270 degC to 2000 degC
+    ceiling_temperature [degC]: temperature of the ceiling, or of the right side; -270 degC to 2000 degC
     gravity [m s-2]: acceleration of gravity; 0 m s-2 to 1000 m s-2
     height [km]: height of the ceiling; 0.1 km to 100 km
-    width: width of the box in heights; 0.5 to 10
+    width: width of the box, divided by its height; 0.5 to 10
     surface_pressure [hPa]: pressure at the floor of the air at rest; 1 hPa to 100000 hPa
     packing: share of the plane that discs cover; 0.01 to 0.5
-    sides: the sides: smooth, periodic, or warm on the left and cold on the right with smooth floor and ceiling; smooth or periodic or warm-and-cold
+    sides: the sides: smooth, periodic, or heat baths with smooth floor and ceiling; smooth or periodic or warm-and-cold
     start: the air at the start: at rest between floor and ceiling, or mixed, of one density and temperature; at-rest or mixed
     tracers: which molecules are marked half-way through the run: those near the floor, or above a chimney in its middle; floor or chimney
     rotation: whether spheres rotate, as molecules of air do; on the engine dsmc; on or off
@@ -315,7 +315,7 @@ def run(
     temperature [degC]: temperature of the walls; -60 degC to 95 degC
     pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 50000 hPa
     humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
-    area: area of the mist, in faces of the box; 0.01 to 100
+    area: area of the mist, divided by that of a face of the box; 0.01 to 100
     drops: number of nuclei of drops that can be seen; 0 for a mist; 0 to 50
     drop_size: width of the drops, divided by that of real ones; 1 to 20
     duration [ns]: how long to watch; 0.01 ns to 100000 ns
@@ -510,7 +510,7 @@ def run(
     density: density of these molecules / critical density; 0.0001 to 2.3
     attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
     start: state at the start; vapour or slab or drop or pool
-    bath: what keeps the temperature; random or walls or none
+    bath: what keeps the temperature constant; random or walls or none
     air: density of molecules without attraction / critical density; 0 to 1
     substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
     heating [K ns-1]: how fast the thermostat becomes warmer; 0 for a constant temperature; 0 K ns-1 to 1000 K ns-1

@@ -261,12 +261,12 @@ class SettingError(AtmosboxError, ValueError):
 
     Examples
     --------
-    >>> error = SettingError("temperature", "-5 K", "is below the lowest allowed, 1 K to 2000 K",
+    >>> error = SettingError("temperature", "-5 K", "is below the allowed range, 1 K to 2000 K",
     ...                      Setting("temperature", "1K"))
     >>> print(error)
-    temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give temperature="1K".
+    temperature = -5 K is below the allowed range, 1 K to 2000 K: give temperature="1K".
     >>> print(error.said(on_command_line))
-    temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=1K.
+    temperature = -5 K is below the allowed range, 1 K to 2000 K: give --set temperature=1K.
     """
 
     exit_code = 2

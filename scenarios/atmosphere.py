@@ -2,9 +2,9 @@
 
 Ten thousand molecules fly in a tall column with real gravity. At the start they are as dense at 20 km as at the floor.
 They fall, and within ten minutes density and pressure decrease with height by the barometric law: by a factor e every
-8.4 km. The means leave out the first half hour. Each molecule falls freely between collisions, and yet the air neither
-collects on the floor nor escapes. The molecules hit the floor, and the force on the floor minus that on the ceiling is
-the weight of the air.
+8.4 km. The means leave out the first half hour. Each molecule falls freely between collisions, and yet the air collects
+neither on the floor nor under the ceiling. The molecules hit the floor, and the force on the floor minus that on the
+ceiling is the weight of the air.
 
 The temperature becomes the same at all heights, because the air is left alone. A molecule that rises loses speed, but
 only fast ones get there: fewer arrive, with the same mean energy. A real atmosphere is heated from below: it turns
@@ -14,11 +14,11 @@ in some 100,000 years. The figure shows both temperatures. The scene ``convectio
 Modelled: molecules in uniform gravity on exact parabolas, periodic sides, a floor that is a heat bath or smooth, a
 smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. With up to 5,000 molecules
 these are hard spheres; with more, chance decides which of them collide, as often as spheres would. Left out: water,
-wind, sunshine. By default each molecule stands for 10^33 real ones and is 70 metres wide, so that its mean free path is
-a given share of the scale height (the Knudsen number). Theory is the barometric law, corrected for such wide molecules:
-hard ones exclude volume, and no centre comes nearer to floor or ceiling than the radius of a molecule, so that a part
-of the lowest and of the highest layer is empty. With ``plane`` the air consists of discs in a plane, which stands for a
-slab one scale height thick.
+wind, sunshine. With 10,000 molecules each stands for 10^33 real ones and is 70 metres wide, so that its mean free path
+is a given share of the scale height (the Knudsen number). Theory is the barometric law, corrected for such wide
+molecules: hard ones exclude volume, and no centre comes nearer to floor or ceiling than the radius of a molecule, so
+that a part of the lowest and of the highest layer is empty. With ``plane`` the air consists of discs in a plane, which
+stands for a slab one scale height thick.
 """
 
 import math
@@ -270,16 +270,16 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     width = f"{'discs' if plane else 'molecules'} {column.diameter * scale.length:.{1 if plane else 0}f} m wide"
     turning = "7/5" if settings.rotation else "5/3: the molecules do not rotate"
     facts = {
-        "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
+        "box": f"a plane {box}; it stands for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
         "real molecules per simulated one": f"{scale.weight:.2g}",
-        "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
+        "exaggeration": f"{width}, which may overlap" if engine.ideal else width,
         "gamma": "2: the discs move in a plane and do not rotate" if plane else turning,
         "scale height": f"{scale.length / 1000.0:.2f} km",
         "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
         "time": f"{settings.duration * scale.time / 60.0:.0f} minutes, of which the first "
         f"{settled * settings.duration / FRAMES * scale.time / 60.0:.0f} are left out of the means",
-        "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
-        f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
+        "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters from one reading to the "
+        f"next by {settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K",
     }
     # colder discs in strong gravity would be too many in the lowest cells of a page
     warm = wall_temperature(parcel, scale, settings, low=200.0 if plane else 100.0, high=600.0)
@@ -391,10 +391,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     held = -math.expm1(-settings.height / scale)  # the share of an endless column that is below the ceiling
     below = ((share, -scale * math.log1p(-share * held)) for share in (0.5, 0.75, 0.9))
     guides = tuple(("y", height, f"{100.0 * share:.0f} % below {height:.1f} km") for share, height in below)
-    thins = measured("layer_pressure", "barometric law, finite molecules")
+    thins = measured("layer_pressure", "barometric law")
     warm = measured("layer_temperature", "isothermal")
     numbers, title = ("scale_height", "mean_surface_pressure"), "At rest it is as warm above as below"
+    note = "Marked: how much of the air in the box is below."
     return (
-        over_height("The air thins with height", thins, "pressure", "hPa", *numbers, guides=guides),
+        over_height("The air thins with height", thins, "pressure", "hPa", *numbers, guides=guides, note=note),
         over_height(title, (*warm, real), "temperature", "K", "mean_temperature"),
     )

@@ -1,9 +1,9 @@
 """Attraction between molecules is enough to form a liquid.
 
-Prescribed are the size of a molecule of argon and its attraction to neighbours: no liquid, no vapour pressure, no
-latent heat, no surface. Two molecules that come within one and a half diameters gain the depth of a square well as
-kinetic energy; to separate, they must give it back. In a dense, cold vapour that is enough: they gather in drops, the
-drops merge, and the energy released warms the vapour.
+Prescribed are only the size of a molecule of argon and its attraction to neighbours. A liquid, a vapour pressure,
+latent heat and a surface are not. Two molecules that come within one and a half diameters gain the depth of a square
+well as kinetic energy; to separate, they must give it back. In a dense, cold vapour that is enough: they gather in
+drops, the drops merge, and the energy released warms the vapour.
 
 Modelled: hard spheres with a square well of range 1.5, whose diameter and depth give it the critical point of argon (or
 nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. So the substance is like argon:
@@ -93,7 +93,7 @@ class Settings(SceneSettings):
     density: float = setting(0.26, "1", "density of these molecules / critical density", low=1e-4, high=2.3)
     attraction: float = setting(1.0, "1", "strength of the attraction; at 0 nothing condenses", low=0.0, high=1.0)
     start: str = setting("vapour", "", "state at the start", choices=("vapour", "slab", "drop", "pool"))
-    bath: str = setting("random", "", "what keeps the temperature", choices=("random", "walls", "none"))
+    bath: str = setting("random", "", "what keeps the temperature constant", choices=("random", "walls", "none"))
     air: float = setting(0.0, "1", "density of molecules without attraction / critical density", low=0.0, high=1.0)
     substance: str = setting(
         "argon",
@@ -244,7 +244,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     cold = f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder."
     facts = {
         "molecules": f"spheres of {scale.length * 1e9:.3f} nm, with a well of {fluid.name}: "
-        f"{scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
+        f"k x {scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
         "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
         "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
         "units": f"time {scale.time * 1e12:.2f} ps, pressure {round(scale.pressure / 1e2, -3):.0f} hPa",
@@ -544,7 +544,7 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
         ("vapor_density", lambda *means: means[0], None, scale.mass_density, "kg m-3", "kg m-3", "vapour"),
         ("vapor_pressure", lambda *means: means[2], published, pressure, "Pa", "hPa", "vapour pressure"),
         ("latent_heat", latent, None, mole, "J mol-1", "kJ mol-1", "latent heat L"),
-        ("clapeyron_slope", slope, steep, depth, "K", "K", "L/ΔZ, the slope of ln p against 1/T"),
+        ("clapeyron_slope", slope, steep, depth, "K", "K", "L/RΔZ, the slope of ln p against −1/T"),
         ("mean_surface_tension", lambda *means: means[5], None, tension, "N m-1", "mN m-1", "surface tension"),
     )
     found, line = [], "published simulations are a line through all temperatures"

@@ -40,7 +40,7 @@ level = "first year"
 minutes = 15
 FRAMES = 240
 SETTLE = 40
-PARTS = 24
+PARTS = 12
 """Number of equal parts of the logarithmic axis of time in which its curves are averaged."""
 BLOCKS = 20
 MEMORIES = 4.0
@@ -68,7 +68,7 @@ class Settings(SceneSettings):
     temperature: float = setting(20.0, "degC", "temperature of the walls", low=-60.0, high=95.0)
     pressure: float = setting(1000.0, "hPa", "pressure of air and vapour at the start", low=1.0, high=50_000.0)
     humidity: float = setting(150.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
-    area: float = setting(2.0, "1", "area of the mist, in faces of the box", low=0.01, high=100.0)
+    area: float = setting(2.0, "1", "area of the mist, divided by that of a face of the box", low=0.01, high=100.0)
     drops: int = setting(0, "1", "number of nuclei of drops that can be seen; 0 for a mist", low=0, high=50)
     drop_size: float = setting(6.0, "1", "width of the drops, divided by that of real ones", low=1.0, high=20.0)
     duration: float = setting(40.0, "ns", "how long to watch", low=0.01, high=1e5)
@@ -115,14 +115,14 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         else "none in the gas; the droplets have far more area than so little water could have",
         "vapour at the start": f"{start.vapour} molecules; {start.full:.0f} saturate the air",
         "time to condense": f"{memory * 1e9:.2g} ns",
-        "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % in each sample",
+        "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % from one reading to the next",
     }
     knobs = (wall_temperature(parcel, scale, settings, low=-20.0, high=60.0),)
     return Setup(parcel, scale, duration, FRAMES, measured, samples=4, settle=SETTLE, facts=facts, knobs=knobs)
 
 
 def _faces(settings: Settings, start: MoistBox) -> float:
-    """Return the area of the liquid in faces of the box; for drops, the final area if none of them merge."""
+    """Return the area of the liquid over that of a face of the box; of drops, the final area if none of them merge."""
     if not settings.drops:
         return settings.area
     held = max(start.vapour - start.full, 0.0) / settings.drops
@@ -193,13 +193,13 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     begun = settings.si.humidity * float(law.saturation_vapor_pressure(settings.si.temperature)) / 100.0
     vapour = over_time(
         "The air becomes saturated", {"water_vapor_partial_pressure": "vapour"}, "vapour pressure", "hPa",
-        log=True, parts=PARTS, headline="mean_water_vapor_partial_pressure", theory="saturation, prescribed",
+        log=True, parts=PARTS, headline="mean_water_vapor_partial_pressure", theory="saturation",
         start=begun, note="Then the vapour pressure fluctuates by chance.", y_limits=(0.0,),
     )  # fmt: skip
     rates = over_time(
-        "Then as many condense as evaporate",
+        "In the end as many evaporate as condense",
         {"condensation_rate": "condensation", "evaporation_rate": "evaporation"}, "molecules per time", "ns-1",
-        log=True, parts=PARTS, headline="mean_condensation_rate", theory="theory", y_limits=(0.0,),
-        note="Condensing warms the liquid, so more evaporates." if settings.humidity > 100.0 else "",
+        log=True, parts=PARTS, theory="theory", y_limits=(0.0,),
+        note="Condensing warms the liquid, so evaporation is fast, too." if settings.humidity > 100.0 else "",
     )  # fmt: skip
     return (vapour, rates, grown) if settings.drops else (vapour, rates)

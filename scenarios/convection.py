@@ -1,6 +1,6 @@
-"""Why warm air rises: between a warm floor and a cold ceiling air begins to turn over.
+"""Why warm air rises: between a hot floor and a cold ceiling air begins to turn over.
 
-Thousands of hard discs fly in a tall box with gravity, in a plane as on a screen. The floor is hot, the ceiling cold.
+Thousands of hard discs fly in a box with gravity, in a plane as on a screen. The floor is hot, the ceiling cold.
 At first the air is at rest and conducts heat. Where it is a little warmer than its neighbours it is lighter. After some
 minutes it rises in plumes, spreads below the ceiling, cools, and sinks beside them: the air turns in rolls. This is not
 prescribed: there is no parcel and no prescribed ascent in this box.
@@ -10,8 +10,8 @@ temperature there falls faster with height. Even then viscosity and conduction m
 over, the core cools less with height than it did at rest: it is mixed.
 
 With ``case`` the same box shows an inversion (the floor is colder than the ceiling: smoke from a chimney stays low), a
-sea breeze (one side is warm, the other cold: wind from the first moment on), or stable air (the same difference of
-temperature with more gravity: the air stays at rest).
+sea breeze (one side is warm, the other cold: wind from the first moment on), or stable air (spheres of an ideal gas,
+with the same difference of temperature and more gravity: the air stays at rest).
 
 Modelled: hard discs in a plane with exact collisions; or with ``--engine dsmc`` an ideal gas of spheres, which may
 rotate, in a box one cell deep. Floor and ceiling are heat baths, the sides smooth or periodic. Left out: water,
@@ -56,9 +56,9 @@ BLOCKS = 5
 Over 60 seeds of stable air the values scatter by .96 and .80 of these errors; with 20 blocks, by 1.48 and .69.
 """
 HEIGHTS = 6.0
-"""Greatest height of the box, in scale heights half-way between the temperatures of floor and ceiling."""
+"""Greatest height of the box, in scale heights at the mean of the temperatures of floor and ceiling."""
 LEAST_GRAVITY = 1.0
-"""Least gravity to which the knob can be turned [m s-2]: without any, another engine would be needed."""
+"""Least gravity to which the knob can be turned [m s-2]: without any, other kernels would be needed."""
 LOWEST = 4.0, 1.5
 """Least height of the box, in diameters of discs and in mean free paths of spheres."""
 CROWD = 14.0
@@ -68,7 +68,7 @@ CELL = 1.0
 IN_CELL = 8.0
 """Number of spheres in a cube of a mean free path."""
 LINEAR = 0.3
-"""Share of its largest speed up to which a roll grows as theory says; it is slower by the square of this share."""
+"""Share of its largest speed up to which a roll grows as theory says, but slower by the square of the share."""
 
 CASES: dict[str, dict[str, Any]] = {
     "rolls": {},
@@ -103,20 +103,20 @@ class Settings(SceneSettings):
     case: str = setting("rolls", "", "which box to run; it sets the other defaults", choices=tuple(CASES))
     molecules: int = setting(7300, "1", "number of molecules", low=50, high=1_000_000)
     floor_temperature: float = setting(
-        270.0, "degC", "temperature of the floor, or of the warm side", low=-270.0, high=2000.0
+        270.0, "degC", "temperature of the floor, or of the left side", low=-270.0, high=2000.0
     )
     ceiling_temperature: float = setting(
-        -245.0, "degC", "temperature of the ceiling, or of the cold side", low=-270.0, high=2000.0
+        -245.0, "degC", "temperature of the ceiling, or of the right side", low=-270.0, high=2000.0
     )
     gravity: float = setting(9.80665, "m s-2", "acceleration of gravity", low=0.0, high=1000.0)
     height: float = setting(13.5, "km", "height of the ceiling", low=0.1, high=100.0)
-    width: float = setting(2.0, "1", "width of the box in heights", low=0.5, high=10.0)
+    width: float = setting(2.0, "1", "width of the box, divided by its height", low=0.5, high=10.0)
     surface_pressure: float = setting(1013.25, "hPa", "pressure at the floor of the air at rest", low=1.0, high=1e5)
     packing: float = setting(0.2, "1", "share of the plane that discs cover", low=0.01, high=0.5)
     sides: str = setting(
         "smooth",
         "",
-        "the sides: smooth, periodic, or warm on the left and cold on the right with smooth floor and ceiling",
+        "the sides: smooth, periodic, or heat baths with smooth floor and ceiling",
         choices=("smooth", "periodic", "warm-and-cold"),
     )
     start: str = setting(
@@ -135,6 +135,7 @@ class Settings(SceneSettings):
     duration: float = setting(1000.0, "s", "how long to watch", low=1.0, high=1e6)
 
     def __init__(self, /, **values: Any) -> None:
+        """Take the defaults of the case for what the user does not set."""
         declared = {parameter.name: parameter for parameter in self.describe()}["case"]
         super().__init__(**(CASES[str(declared.parse(values.get("case", declared.default)))] | values))
 
@@ -146,7 +147,7 @@ class Settings(SceneSettings):
         return float(math.floor(100.0 * HEIGHTS * light) / 100.0)
 
     def check(self) -> None:
-        """Refuse a weight that would leave hardly any air below the ceiling."""
+        """Refuse gravity so strong that hardly any air would be left near the ceiling."""
         most = self.most_gravity
         if self.gravity > most:
             problem = f"is so large that the box is more than {HEIGHTS:g} scale heights high"
@@ -154,7 +155,7 @@ class Settings(SceneSettings):
 
 
 class Box:
-    """The box in reduced units: mass in masses of a molecule, energy in kT half-way between floor and ceiling.
+    """The box in reduced units: mass in masses of a molecule, energy in kT at the mean temperature of the two walls.
 
     The unit of length is the diameter of a disc or, of the spheres of dsmc, their mean free path. A plane of discs
     stands for a slab one unit thick.
@@ -162,6 +163,7 @@ class Box:
 
     def __init__(self, settings: Settings, engine: EngineChoice = EXACT) -> None:
         si = settings.si
+        # a thin gas of spheres instead of discs
         self.thin = engine.name == "dsmc"
         n, aspect = settings.molecules, settings.width
         density = IN_CELL if self.thin else 4.0 / math.pi * settings.packing
@@ -231,12 +233,15 @@ def _growth(
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the box runs unless the user names another: theory knows the onset in an ideal gas."""
+    """Return the engine on which the box runs unless the user names another.
+
+    For stable air it is dsmc, because only of an ideal gas theory tells that it stays at rest.
+    """
     return "dsmc" if settings.case == "stable" else "exact"
 
 
 def _layered(box: Box, settings: Settings, rng: RandomNumbers) -> tuple[np.ndarray, np.ndarray]:
-    """Return the positions of molecules as dense and as warm in each layer as the start requires."""
+    """Return positions and temperatures of molecules, each layer as dense and as warm as the start requires."""
     n = settings.molecules
     turn = settings.sides == "periodic"
     edge = 0.5 * box.gas.diameter
@@ -257,6 +262,7 @@ def _layered(box: Box, settings: Settings, rng: RandomNumbers) -> tuple[np.ndarr
         wide = box.width - (0.0 if turn else 1.0)
         columns = max(int(wide * math.sqrt(float(density.max()))) + (0 if turn else 1), 1)
         rows = -(-n // columns)
+        # n of all places, at random: the others stay free
         sites = np.sort(np.argsort(rng.random(rows * columns), kind="stable")[:n])
         row, column = np.divmod(sites, columns)
         x = column * wide / columns if turn else 0.5 + column * wide / max(columns - 1, 1)
@@ -308,7 +314,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     spread = float(box.gas.conductivity(box.density, 1.0)) / (box.density * (0.5 * box.gas.freedom + 1.0))
     memory = box.height**2 / (math.pi**2 * spread)
     kind = "spheres of an ideal gas" if box.thin else f"discs {scale.length:.0f} m wide"
-    depth = f"a slab {scale.length:.0f} m thick" if box.thin else f"a plane, for a slab {scale.length:.0f} m thick"
+    depth = f"{'' if box.thin else 'a plane that stands for '}a slab {scale.length:.0f} m thick"
     onset = (
         "none: theory of the onset is for an ideal gas, on the engine dsmc"
         if math.isnan(fastest)
@@ -320,12 +326,12 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     facts = {
         "box": f"{depth}, {settings.width * settings.height:.3g} km wide, {settings.height:g} km high",
         "real molecules per simulated one": f"{scale.weight:.2g}",
-        "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high, real air 10^11; "
-        f"temperature falls by {steep:.3g} K/km on average",
+        "exaggeration": f"{kind}; the box is {box.height / path:.0f} mean free paths high; in real air it would "
+        f"be 10^11; temperature falls by {steep:.3g} K/km on average",
         "adiabat": f"{1000.0 * lapse:.3g} K/km at the mean density",
         "gamma": {2: "2: discs in a plane", 3: "5/3: they do not rotate", 5: "7/5"}[box.gas.freedom],
         "Rayleigh number": f"{law.rayleigh_number(rest):.3g}" if not box.beside else "none: the sides are heated",
-        "Knudsen number": f"{path / box.height:.2g}, mean free path in heights",
+        "Knudsen number": f"{path / box.height:.2g}, the mean free path divided by the height",
         "onset by linear theory": onset,
         "time": f"{settings.duration:g} s, of which the first {settings.duration * SETTLE / FRAMES:.0f} are left "
         "out of the means",
@@ -376,7 +382,7 @@ def _noise(dataset: "xr.Dataset", molecules: int) -> float:
 
 
 def _linear(dataset: "xr.Dataset", settings: Settings) -> int | None:
-    """Return the last frame in which rolls grow as linear theory says, if they do."""
+    """Return the frame up to which rolls grow as linear theory says, if they do."""
     speed = dataset.roll_speed.values
     reached = speed > LINEAR * np.nanmax(speed)
     if settings.start != "at-rest" or settings.sides == "warm-and-cold" or not reached.any():
@@ -395,7 +401,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         return ()
     kT, pull = box.now(dataset)
     rest = box.rest(kT, pull)
-    # in unstable air that is too viscous to turn over buoyancy amplifies the noise of rolls, so it has no theory here
+    # in unstable air that does not turn over, buoyancy amplifies the noise of rolls: only stable air has a theory here
     still = box.thin and not box.beside and law.rayleigh_number(rest) <= 0.0
     found = [_weight(late, dataset, box)]
     if box.beside:
@@ -425,6 +431,7 @@ def _weight(late: "xr.Dataset", dataset: "xr.Dataset", box: Box) -> Headline:
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[-late.sizes["elapsed_time"], -1], [0, 1]])[0])
     pull = box.now(dataset)[1]
     per_area = box.density * box.height
+    # the share of the width that centres reach: all of it between periodic sides, which have no pressure (NaN)
     inner = 1.0 - (0.0 if bool(np.isnan(force[0, 0])) else box.gas.diameter) / box.width
     # the momentum at either end of the time is a matter of chance, with the variance N m kT
     warm = float(np.mean(late.air_temperature.values)) / box.scale.temperature
@@ -455,11 +462,12 @@ def _core(late: "xr.Dataset", box: Box, rest: law.RestState, *, still: bool) -> 
 
 def _breeze(late: "xr.Dataset") -> tuple[Headline, Headline]:
     """Return the wind from the cold to the warm side in the lower half, and back in the upper half."""
-    wind = late.horizontal_wind.values
+    left, right = late.wall_temperature.values[-1, :2]
+    wind = late.horizontal_wind.values * (1.0 if right > left else -1.0)  # to the warm side
     _, columns, rows = wind.shape
     middle = wind[:, columns // 4 : columns - columns // 4].mean(axis=1)
-    onshore = overlapping_average(-middle[:, : rows // 2].mean(axis=1))
-    back = overlapping_average(middle[:, rows // 2 :].mean(axis=1))
+    onshore = overlapping_average(middle[:, : rows // 2].mean(axis=1))
+    back = overlapping_average(-middle[:, rows // 2 :].mean(axis=1))
     return (
         Headline.of_mean("onshore_wind", "wind to the warm side, lower half", onshore, None, "m s-1"),
         Headline.of_mean("return_wind", "wind to the cold side, upper half", back, None, "m s-1"),
@@ -490,14 +498,14 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     rest = Line("layer_temperature_conduction", "height", "conducted, at rest", "theory")
     adiabat = Line("layer_temperature_adiabatic", "height", "adiabat", "reference")
     title = TITLES.get(settings.case, "Mixed air comes nearer to the adiabat")
-    profile = over_height(title, (measured, rest, adiabat), "temperature", "degC", "mean_core_lapse_rate")
+    note = "" if settings.case in TITLES else "A small box needs such large differences."
+    profile = over_height(title, (measured, rest, adiabat), "temperature", "degC", "mean_core_lapse_rate", note=note)
     if settings.sides == "warm-and-cold":
-        title, wind = "Wind to the warm side below, back above", "wind away from the warm side"
+        title, wind = "Wind to the warm side below, back above", "wind to the right"
         line = Line("layer_wind", "height", "wind", error="layer_wind_se")
         profile = over_height(title, (line,), wind, "m s-1", "onshore_wind", "return_wind")
     rolls = over_time(
         "The wind" if settings.case in TITLES else "How fast the rolls turn",
-        {"roll_speed": "rolls"}, "speed of the rolls", theory="linear theory", headline="mean_wind_speed",
-        x_unit="min", note="The noise of so few molecules is subtracted: below zero is chance.",
+        {"roll_speed": "rolls"}, "speed of the rolls", theory="linear theory", x_unit="min", y_limits=(0.0,),
     )  # fmt: skip
     return profile, rolls

@@ -142,9 +142,9 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, with periodic sides",
         "real molecules per simulated one": "1",
         "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
-        "gamma": "5/3: the molecules do not rotate",
-        "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",
-        "mixing time": f"{scale.time / rate * 1e9:.3g} ns: the left-right difference falls to 1/e",
+        "degrees of freedom": "3: the molecules do not rotate",
+        "mean free path": f"{path * scale.length * 1e9:.3g} nm, 1/{(length[0] - 1.0) / path:.0f} of the length",
+        "mixing time": f"{scale.time / rate * 1e9:.3g} ns: the difference between left and right falls to 1/e",
         "noise": f"the diffusion coefficient of one run scatters by {100.0 * _spread(settings):.1f} %",
     }
     measured = Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)
@@ -258,15 +258,11 @@ def _entropy_spread(passed: float, molecules: int) -> tuple[float, float, float]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the share across the box at three moments, the decay of the difference, and the entropy."""
+    """Return the share across the box at three moments, and the entropy."""
     lasts = 1e9 * _scale(settings).time / _rate(settings, ideal=False)
     shares = {name: f"{moment * lasts:.2g} ns" for name, moment in MOMENTS.items()}
-    alike = over_time(
-        "Left and right become alike", {"mixing_amplitude": "molecules"}, "left minus right",
-        theory="theory", headline="diffusion_coefficient",
-    )  # fmt: skip
     entropy = over_time(
-        "Mixing increases the entropy", {"mixing_entropy": "molecules"}, "entropy / N\u00a0k\u00a0ln\u00a02",
+        "Mixing increases the entropy", {"mixing_entropy": "molecules"}, "entropy of mixing (1: fully mixed)",
         theory="theory", headline="entropy_after_one_mixing_time",
     )  # fmt: skip
     lines: list[Line] = []
@@ -275,4 +271,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         lines += [Line("distance", share, label, error=f"{share}_se")]
         lines += [Line("distance", f"{share}_theory", "theory", "theory")]
     axes = "distance from the left wall", "share of the left gas", "nm", "percent"
-    return alike, entropy, Panel("line", "The left gas spreads to the right", tuple(lines), *axes)
+    spreads = Panel(
+        "line", "The left gas spreads to the right", tuple(lines), *axes, headlines=("diffusion_coefficient",)
+    )
+    return spreads, entropy

@@ -79,8 +79,9 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         "box": f"a table of {settings.side:g} m x {settings.side:g} m",
         "masses": f"from 10 g to {10.0 * float(mass.max()):.0f} g",
         "exaggeration": "none",
-        "gamma": "2: two degrees of freedom",
-        "noise": f"the mean energy of {n // 2} discs scatters by {100.0 / math.sqrt(n + 1.0):.0f} % in each sample",
+        "degrees of freedom": "2: the discs move in a plane",
+        "noise": f"the mean energy of {n // 2} discs scatters by {100.0 / math.sqrt(n + 1.0):.0f} % "
+        "from one reading to the next",
     }
     measured = Air(), Discs(), Speeds(np.linspace(0.0, 5.0, 51), blocks=BLOCKS)
     duration = si.duration / scale.time
@@ -157,7 +158,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     shared = over_time(
         "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
         {"running_energy_light": light, "running_energy_heavy": heavy}, "mean energy so\u00a0far",
-        more=(mean,), log=True, headline="energy_of_light_discs",
+        "mJ", more=(mean,), log=True, headline="energy_of_light_discs",
     )  # fmt: skip
     measured, guides = Line("speed", density, "discs", error=f"{density}_se"), (("x", settings.speed, "start"),)
     lines = measured, Line("speed", f"{density}_theory", "Maxwell, in a plane", "theory")

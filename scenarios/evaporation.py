@@ -253,7 +253,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     )  # fmt: skip
     wet = over_time(
         "The air becomes saturated",
-        {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, prescribed"},
+        {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation at the pool"},
         "vapour pressure", "hPa", headline="final_humidity", **log,
     )  # fmt: skip
     energies = (

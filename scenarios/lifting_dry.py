@@ -9,8 +9,8 @@ Modelled: hard spheres with two rotational degrees of freedom, which exchange en
 hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it would change its temperature by
 less than a billionth), water, mixing and exchange of heat with the environment. Exaggerated: the molecules are larger
 than those of air, so that they meet often, and the parcel rises nine kilometres within nanoseconds. Because the ascent
-is not infinitely slow, the parcel is too warm at 300 hPa: by about 155 K divided by the duration of the ascent in mean
-free times, which is 0.1 K in the default run.
+is not infinitely slow, the parcel is too warm at 300 hPa (the finite-rate error): by about 155 K divided by the
+duration of the ascent in mean free times, which is 0.1 K in the default run.
 """
 
 import math
@@ -40,6 +40,7 @@ level = "first year"
 minutes = 15
 FRAMES = 40
 _THEORY = "theory is the adiabat, plus the warming by the finite speed, minus the cooling by the volume of the spheres"
+# their errors go as the power -1 of the duration of the ascent
 _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parcel_temperature"), -1.0)
 series = (
     Series("exact", "ascent", (50, 100, 200, 400, 800, 1600), order=_SLOW),
@@ -72,7 +73,10 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
-    """Return the scale; and at the start, in diameters, density, sides that centres can reach, and (Z - 1) / n."""
+    """Return the scale; at the start, in diameters, the density n, the sides that centres can reach, and (Z - 1) / n.
+
+    Z is the pressure over n k T.
+    """
     si = settings.si
     scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
     return scale, *size_of_parcel(scale, settings.molecules, si.pressure, ideal=ideal)
@@ -82,6 +86,7 @@ def _ascent(settings: Settings) -> law.Ascent:
     """Return the ascent, with its finite-rate error."""
     freedom = 5 if settings.rotation else 3
     _, density, sides, _ = _start(settings)
+    # the time in which a molecule at the thermal speed, which is 1, flies that far, in mean free times
     height = float(sides[2]) / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
     return law.Ascent(tuple(_route(settings).tolist()), settings.ascent, height, freedom)
 
@@ -169,6 +174,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     si = settings.si
     pressure = dataset.parcel_pressure.values
     order = np.argsort(pressure)
+    # the difference from the adiabat changes little with pressure, so it can be interpolated
     warmer = (dataset.parcel_temperature.values - dataset.adiabat_temperature.values)[order]
     error = dataset.parcel_temperature_se.values[order]
     freedom, density = 5 if settings.rotation else 3, _start(settings)[1]
@@ -181,6 +187,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found, chance = (float(np.interp(level, pressure[order], each)) for each in (warmer, error))
         return adiabat + found, chance, adiabat + known
 
+    # levels [hPa] that the pressure [Pa] has reached, to within a percent
     reached = [level for level in _levels(settings) if pressure.min() <= 101.0 * level]
     found = [
         Headline(

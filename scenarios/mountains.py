@@ -126,7 +126,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         value, error = float(dataset.rain_mixing_ratio[-1]), unit * max(float(lost.std()), 1.0)
         answer = float(path.rain[-1]) + unit * float(lost.mean()) if comparable(ascent) else None
         reason = "the liquid of so few molecules scatters, and what exceeds the limit rains out"
-        found.append(Headline("rain", value, error, answer, 0.0, reason, "kg kg-1", "g kg-1", "rain per dry air"))
+        found.append(
+            Headline("rain", value, error, answer, 0.0, reason, "kg kg-1", "g kg-1", "rain per kilogram of dry air")
+        )
     return tuple(found)
 
 

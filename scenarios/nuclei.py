@@ -279,6 +279,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     curves = Panel(
         "line", "Above its curve a drop grows", tuple(over), "radius", "relative humidity", "nm", "percent",
         note="Below it shrinks, as pure water does here." if settings.pure else "", headlines=("humidity_over_drops",),
-        guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),), x_limits=(0.5, 2.5),
+        guides=(("y", 100.3, "clouds, with larger drops: 100.3 %"),), x_limits=(0.1, 2.7),
     )  # fmt: skip
     return grown, curves

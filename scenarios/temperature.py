@@ -35,10 +35,11 @@ level = "school"
 minutes = 10
 FRAMES = 1000
 SETTLE = 50
+"""Number of frames left out of the means: until the gas is as warm as the walls."""
 WARMEST = 500.0
 """Temperature to which the walls can be warmed while the box runs [degC]."""
 
-_LATE = {"collision_rate": 2.0}
+_LATE = {"collision_rate": 2.0}  # its error grows with this power of the step
 series = (
     Series("exact", "duration", (5, 20, 80, 320)),
     Series("stepped", "delta", (0.8, 0.4, 0.2, 0.1, 0.05), {"duration": 20}, _LATE),
@@ -66,7 +67,7 @@ class Settings(SceneSettings):
 
 
 def _gas(settings: Settings, *, ideal: bool) -> tuple[Scale, law.WalledGas]:
-    """Return the units of the engine in SI, and the gas of theory as warm as the walls; on `dsmc` it is ideal."""
+    """Return the units of the engine in SI, and theory of the gas, as warm as the walls; on `dsmc` it is ideal."""
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * settings.si.temperature)
     return scale, law.walled_gas(settings.si.pressure / scale.pressure, settings.molecules, ideal=ideal)
 
@@ -88,24 +89,26 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
         "real molecules per simulated one": "1",
         "exaggeration": "none: mass, diameter, density and speeds are those of air",
-        "gamma": "5/3: the molecules do not rotate",
+        "degrees of freedom": "3: the molecules do not rotate",
         "mean free path": f"{float(law.mean_free_path(gas.density, 1.0)) * scale.length * 1e9:.3g} nm",
-        "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K in each sample",
+        "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K "
+        "from one reading to the next",
     }
     duration = si.duration / scale.time
     return Setup(parcel, scale, duration, FRAMES, (Air(), shares), settle=SETTLE, facts=facts, knobs=(knob,))
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return Maxwell's curve, n k T Z and the noise of a small thermometer, at the temperature of the walls."""
+    """Return n k T Z, the noise of a small thermometer, and Maxwell's curves, at the start and as warm as the walls."""
     scale, gas = _gas(settings, ideal=used(dataset).ideal)
     walls = dataset.wall_temperature.values[:, 0]
-    kT = BOLTZMANN * float(walls[-1])
+    kT, cold = BOLTZMANN * float(walls[-1]), BOLTZMANN * settings.si.start_temperature
     return {
         "air_temperature_theory": walls,
         "air_temperature_noise": np.asarray(law.temperature_noise(settings.molecules, 3, walls)),
         "air_pressure_theory": gas.density * gas.factor * scale.pressure * walls / scale.temperature,
         "speed_probability_density_theory": law.maxwell_speed_density(dataset.speed, kT, DRY_AIR.molecule_mass),
+        "speed_probability_density_start": law.maxwell_speed_density(dataset.speed, cold, DRY_AIR.molecule_mass),
     }
 
 
@@ -115,11 +118,12 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     scale, gas = _gas(settings, ideal=used(dataset).ideal)
     warm = dataset.isel(elapsed_time=slice(SETTLE, None))
     if warm.sizes["elapsed_time"] < 41:
-        return ()
-    # the length of a frame [s]; collisions of a molecule per second: each collision is one of two molecules
+        return ()  # too few for error bars
+    # the length of a frame [s], and collisions of a molecule per second: a collision counts for both molecules
     frame = float(warm.elapsed_time[-1] - warm.elapsed_time[0]) * 1e-9 / (warm.sizes["elapsed_time"] - 1)
     met = np.diff(warm.collision_count.values) * 2.0 / settings.molecules / frame
     measured = warm.air_temperature.values, warm.air_pressure.values, warm.mean_molecular_speed.values, met
+    # `memory`: the time over which the gas correlates, in frames
     mean = [overlapping_average(each, memory=gas.memory * scale.time / si.duration * FRAMES) for each in measured]
     pressure, rate = gas.density * gas.factor * scale.pressure, gas.collision_rate / scale.time
     speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
@@ -146,7 +150,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         theory="n k T, molecules of finite size", log=True, parts=60, headline="mean_pressure",
     )  # fmt: skip
     measured = Line("speed", density, "molecules", error=f"{density}_se")
-    lines = (measured, Line("speed", f"{density}_theory", "Maxwell", "theory"))
-    title = "Speeds follow Maxwell's law"
+    lines: tuple[Line, ...] = (measured, Line("speed", f"{density}_theory", "Maxwell", "theory"))
+    if settings.start == "maxwell":
+        lines += (Line("speed", f"{density}_start", "Maxwell at the start", "reference"),)
+    title = "In warm air molecules fly faster"
     speeds = Panel("histogram", title, lines, "speed", "probability density", headlines=("mean_speed",))
     return temperature, pressure, speeds

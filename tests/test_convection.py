@@ -162,16 +162,16 @@ def test_the_errors_of_lapse_rate_and_heat_in_stable_air_are_the_scatter_of_sixt
 
 
 def turned(settings, turns, frames):
-    """Return a run in which knobs are turned after some frames, and its headlines before and after by name."""
+    """Return a run in which knobs are turned after some frames, and its headlines before, of all, and afterwards."""
     link = f"#atmosbox={__version__}&scene=convection&{settings}&seed=1&turns={turns}&frames={frames}&end"
     prepared = runner.replayed(link)
     data, first = runner.execute(prepared).dataset, int(turns.partition(":")[0])
-    parts = data.isel(elapsed_time=slice(0, first)), data
+    parts = data.isel(elapsed_time=slice(0, first)), data, data.isel(elapsed_time=slice(first, None))
     return data, *({each.name: each for each in prepared.module.headlines(part, prepared.settings)} for part in parts)
 
 
 def test_below_an_inversion_smoke_stays_low_until_the_floor_is_warmed():
-    data, before, after = turned(
+    data, before, after, _ = turned(
         "case=inversion&molecules=4000&gravity=12&width=1.5&duration=800",
         "120:floor_temperature:270,120:ceiling_temperature:-245",
         230,
@@ -183,12 +183,12 @@ def test_below_an_inversion_smoke_stays_low_until_the_floor_is_warmed():
 
 
 def test_between_land_and_sea_the_wind_blows_to_the_warm_side_below_and_back_above_and_turns_if_the_sides_do():
-    data, before, _ = turned(
+    data, before, _, after = turned(
         "case=sea-breeze&molecules=2000&duration=400",
         "120:floor_temperature:-101,120:ceiling_temperature:127",
         240,
     )
-    for wind in (before["onshore_wind"], before["return_wind"]):
+    for wind in (part[name] for part in (before, after) for name in ("onshore_wind", "return_wind")):
         assert wind.value > max(10.0, 4.0 * wind.standard_error)
     below = data.horizontal_wind.values[160:, 5:15, :4].mean(axis=(1, 2))
     offshore = overlapping_average(below)

@@ -171,7 +171,9 @@ def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so():
 def test_curves_differ_by_more_than_their_colour(drawings):
     for axes in (axes for drawing in drawings.values() for axes in drawing.axes):
         looks = [
-            (line.get_marker(), str(line._unscaled_dash_pattern)) for line in axes.lines if len(line.get_xdata()) > 2
+            (line.get_marker(), str(line._unscaled_dash_pattern))
+            for line in axes.lines
+            if len(line.get_xdata()) > 2 and (line.get_linestyle(), line.get_marker()) != ("None", "None")
         ]
         assert len(set(looks)) == len(looks)
 

@@ -103,10 +103,10 @@ NO_NUMBER = [True, [25], np.array([25.0]), "warm", "٢٥", "2" * 300]
 NO_UNIT = ["25 deg", "25°", "25 blorp", "25 degC 300", "2*25 K", "10⁵ K", "5 dB", "5 rad", "5 delta_degC"]
 NO_UNIT += ["5 __class__", "5 pm-99", "5 m**9**9**9", "5 m/m"]
 REFUSED = [  # setting, value, what the sentence says
-    ("temperature", -200, '-200 degC is below the lowest allowed, -100 degC to 500 degC: give temperature="-100degC".'),
-    ("temperature", "2000 K", "2000 K is above the highest allowed, -100 degC to 500 degC"),
-    ("molecules", "2e7", "2e7 is above the highest allowed, 1 to 10000000: give molecules=10000000."),
-    ("seed", -1, "-1 is below the lowest allowed, 0 to 9223372036854775807: give seed=0."),
+    ("temperature", -200, '-200 degC is below the allowed range, -100 degC to 500 degC: give temperature="-100degC".'),
+    ("temperature", "2000 K", "2000 K is above the allowed range, -100 degC to 500 degC"),
+    ("molecules", "2e7", "2e7 is above the allowed range, 1 to 10000000: give molecules=10000000."),
+    ("seed", -1, "-1 is below the allowed range, 0 to 9223372036854775807: give seed=0."),
     ("molecules", "1,000", "give molecules=1000."),
     ("molecules", "1,2,3", "give molecules=123."),
     (HEIGHT, "1,5", 'give height="1.5km".'),

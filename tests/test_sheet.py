@@ -287,19 +287,24 @@ def test_a_screen_reader_finds_headings_headers_names_and_descriptions_in_the_pa
     assert "____" not in page
 
 
-@pytest.mark.parametrize("scene", ["attraction", "elastic-collisions", "lifting-dry"])
+@pytest.mark.parametrize("scene", SMALL)
 def test_a_sheet_for_pages_names_pages_and_graphs_and_nothing_that_is_typed(scene):
     made = sheets.worksheet(scene, SMALL[scene] | ({"ascent": 50} if scene == "lifting-dry" else {}), lab=True)
     assert "--" not in re.sub(r"-{3,}", "", made.text)
     assert "atmosbox" not in made.text
     assert "```sh" not in made.text
     assert [run.page for run in made.runs] == re.findall(r"open `(.+\.html)`", made.text)
-    assert ("until it stops" in made.text) == (scene == "lifting-dry")
-    panels = made.runs[0].prepared.module.panels
-    titles = {panel.title for panel in (panels(made.runs[0].prepared.settings) if callable(panels) else panels)}
-    rows = re.findall(r"^\| ([^|]*) \| ([^|]+) \| A \|", made.text, re.MULTILINE)
-    assert rows
-    assert {graph for graph, _ in rows} <= titles
+    assert "logarithmic" not in made.text
+    assert ("until it stops" in made.text) == scene.startswith(("lifting", "mountains"))
+    rows = re.findall(r"^\| ([^|]*) \| ([^|]*) \| ([A-D]) \|", made.text, re.MULTILINE)
+    shown = {run.letter: run.prepared.module.panels(run.prepared.settings) for run in made.runs}
+    assert {graph for graph, _, _ in rows if graph} <= {panel.title for panel in shown["A"]}
+    curve = ""
+    for _, told, letter in rows:  # no run has a line of a curve that its page does not show
+        curve = told or curve
+        assert curve.partition(", at ")[0].partition(", in ")[0] in {
+            line.label for panel in shown[letter] for line in panel.lines
+        }
 
 
 def test_pages_are_written_beside_their_sheet_or_nothing_is(tmp_path):

@@ -105,7 +105,7 @@ def test_vapour_pressures_are_drawn_over_one_over_temperature_with_the_slope_of_
     np.testing.assert_allclose(slopes[:, 0], -1e-3 * np.array(SLAB["clapeyron_slope"][2]))
     np.testing.assert_allclose(np.exp(np.log(ends[:, :, 1]).mean(axis=1)), points[:, 1])
     said = " ".join(text.get_text() for text in drawing.texts)
-    assert "L/ΔZ, measured within the runs" in said
+    assert "L/RΔZ, measured within the runs" in said
     assert right.get_ylabel() == "temperature (K)"
 
 

@@ -42,7 +42,7 @@ def lab(
     """Write a page in which a scene runs: the engine itself, in the browser.
 
     The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed given
-    here. Its numbers are those of `atmosbox run` with the same settings and --engine exact. Its knobs act at once;
+    here. Its numbers are those of `atmosbox run` with the same settings and --engine exact. Its sliders act at once;
     other settings have a few values to choose from. With `atmosbox live`, more settings can be changed.
     """
     if every:
@@ -105,11 +105,7 @@ def save_all(
             f'<a href="{pages[name].name}"><img alt="" src="data:image/png;base64,{_still(prepared)}">'
             f"<h2>{title}</h2><p>{html.escape(told.sentence)}</p><small>{html.escape(about)}</small></a>"
         )
-    text = (
-        packaged("web", "index.html")
-        .replace("@@SCENES@@", "\n".join(cards))
-        .replace("@@BY@@", f"Made by atmosbox {__version__}.")
-    )
+    text = packaged("web", "index.html").replace("@@SCENES@@", "\n".join(cards)).replace("@@VERSION@@", __version__)
     write_whole(index, text.encode("utf-8"))
     return [index, *pages.values()]
 

@@ -207,7 +207,7 @@ def _earlier(path: str) -> Asked:
     if not isinstance(scene, str) or not isinstance(settings, dict):
         raise FileError(f"{path} does not say which run it holds: give a file that atmosbox has written.")
     if "replay" in made:
-        tell(f"note: in {path} knobs may have been turned, and this run turns none; --replay does")
+        tell(f"note: in {path} sliders may have been moved, and this run moves none; --replay does")
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
     return Asked(scene, settings, str(made.get("engine", "exact")), kept if isinstance(kept, bool) else None)

@@ -45,7 +45,8 @@ def run(
         ),
     ] = None,
     replay: Annotated[
-        str | None, text("LINK", "Repeat a run of the lab page, with every turn of its knobs: give its link in quotes.")
+        str | None,
+        text("LINK", "Repeat a run of the lab page, with every move of its sliders: give its link in quotes."),
     ] = None,
     resume: Annotated[
         str | None, text("FILE", "Go on with a run that was stopped or killed, from its NAME.part.nc.")

@@ -1,7 +1,7 @@
 """The engine: colliding molecules, without any meteorology.
 
-Read `core` first, then `exact`; the other folders when you need them. Each lists its files in the order in which to
-read them; docs/engine.md leads through them in an afternoon.
+Read `core` first, then `exact`; the other folders when you need them. Each lists its files; docs/engine.md leads
+through them in an afternoon.
 
 `core`     molecules, walls, schedules, random numbers, collision laws, tallies, refusals
 `start`    positions and velocities of the molecules at the start
@@ -19,7 +19,7 @@ them does not wait for numba.
 import importlib
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # for type checkers, which do not run this file
     from atmosbox.engine.core.lift import Course, FollowPressure
     from atmosbox.engine.core.packing import packing_fraction
     from atmosbox.engine.core.parcel import Driver, Parcel, Snapshot
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.wells.attracting_parcelset import AttractingParcelSet
     from atmosbox.engine.wells.attraction import RandomBath, SquareWell
 
+# the file that defines each name
 _HOMES = {
     "core.lift": "Course FollowPressure",
     "core.packing": "packing_fraction",
@@ -68,7 +69,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name from the file that defines it."""
+    """Import a public name from the file that defines it: Python calls this when the name is first used."""
     if name not in _HOME_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(importlib.import_module(f"{__name__}.{_HOME_OF[name]}"), name)

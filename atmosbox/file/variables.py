@@ -259,7 +259,8 @@ cell_pressure | Pa | time distance height: mean | pressure of the air in a cell,
 equation of state
 horizontal_wind | m s-1 | time distance height: mean | wind from left to right
 upward_wind | m s-1 | time distance height: mean standard=upward_air_velocity | upward wind
-wind_speed | m s-1 | time: mean | root mean square of the wind, less thermal noise; by chance it may be below zero
+wind_speed | m s-1 | time: mean | root of the difference of two mean squares, of the wind and of thermal noise; \
+below zero where, by chance, that of the noise is larger
 roll_speed | m s-1 | time: mean | root of the sum of the squared amplitudes of all rolls, without noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
 roll_amplitude | m s-1 | time mode: mean | amplitude of the upward wind of rolls
@@ -269,8 +270,10 @@ layer_temperature_conduction | K | height: mean | temperature of air at rest tha
 layer_temperature_adiabatic | K | height: mean | temperature of the adiabat through the middle of the height
 # Speeds, bin by bin
 speed_probability_density | s m-1 | speed: mean | share of molecules per unit of speed
+speed_probability_density_start | s m-1 | speed: mean | that of Maxwell's law for the temperature at the start
 # Two gases that mix
-mixing_amplitude | 1 | time: point | amplitude of the longest wave of the difference, divided by that at the start
+mixing_amplitude | 1 | time: point | amplitude of the longest wave in the difference between the two gases, \
+divided by that at the start
 mixing_entropy | 1 | time: point | entropy of mixing per molecule, divided by that of fully mixed gases
 left_gas_share_early | 1 | distance: mean | share of the gas from the left, after a tenth of the mixing time
 left_gas_share_middle | 1 | distance: mean | share of the gas from the left, after half the mixing time

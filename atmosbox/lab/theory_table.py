@@ -64,8 +64,8 @@ def short_run(prepared: Prepared) -> xr.Dataset:
         raise SettingError(
             "scene", prepared.scene,
             "has so many molecules in one place that the memory of the page is too small for them",
-            "give it fewer molecules, begin it where it comes to rest, as atmosphere with ",
-            Setting("start", "equilibrium"), ", or ", *elsewhere(prepared.scene)
+            "give it fewer molecules, let it begin in equilibrium (in atmosphere: ",
+            Setting("start", "equilibrium"), "), or ", *elsewhere(prepared.scene)
         )  # fmt: skip
     found, _ = run.dataset("lab", settle=0, judged=False)
     return found

@@ -28,8 +28,8 @@ _DESCENT = 0.1
 """A path that goes down again by more than this share of its range of heights leads over mountains."""
 _RADIUS = 0.75
 """Radius of the parcel at the start, in units of the type size."""
-_MIDDLE = 0.4
-"""Horizontal position of a vertical path, in widths of the picture."""
+_MIDDLE, _CLOUD_MIDDLE = 0.4, 0.53
+"""Horizontal position of a vertical path and of its cloud, in widths of the picture."""
 _PUFFS = 9
 """Number of puffs across the width of a cloud."""
 _GAP = 0.07
@@ -147,6 +147,10 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
             _puffs(axes, across[seen], way.height[seen], size, theme)
         else:
             _tower(axes, base, float(way.height[: until + 1].max()), room, theme)
+            note: dict[str, Any] = {"size": theme.small, "color": DARK, "zorder": 3.0}
+            axes.annotate(
+                "cloud base", (0.02, base), (0.0, -0.3 * theme.small), textcoords="offset points", va="top", **note
+            )
         entries.append(((Patch(facecolor=_CLOUD, edgecolor=_RIM, linewidth=theme.line),), "cloud"))
     fallen = way.rain[: until + 1]
     if fallen[-1] > 0.0:
@@ -162,13 +166,15 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     area = np.pi * (_RADIUS * theme.text * way.radius[stations]) ** 2
     colours = [_RIM if cloudy else _CLEAR for cloudy in way.cloudy[stations]]
     axes.scatter(x, y, area, colours, edgecolors=_BLUE, linewidths=theme.line, zorder=4.0)
+    if not way.crosses:  # its size at the start, to compare
+        axes.scatter(x[1:], y[1:], area[:1], "none", edgecolors=FAINT, linewidths=0.7 * theme.line, zorder=4.1)
     for place, frame in enumerate(stations):
         at, warm = (across[frame], way.height[frame]), f"{way.temperature[frame]:.0f} °C"
         if way.crosses:
             side = 1 if place == 0 and stations.size > 1 else -1 if frame == way.height.size - 1 else 0
             _say(axes, warm, at, (side, 1), theme, bold=True)
         else:
-            up = 0.6 if way.height[frame] <= 0.02 * way.height[-1] else 0.0  # not over the ground
+            up = 1.1 if way.height[frame] <= 0.02 * way.height[-1] else 0.0  # not over the ground
             down = 0.0 if wide else 0.55
             _say(axes, warm, at, (1, 0), theme, bold=True, lower=-down - up)
             _say(axes, f"{way.pressure[frame]:.0f} hPa", at, (-1 if wide else 1, 0), theme, lower=down - up)
@@ -196,14 +202,14 @@ def _tower(axes: Axes, base: float, top: float, room: float, theme: Theme) -> No
     rows = max(2, round(16.0 * (top - base) / room))
     share, place = np.repeat(np.linspace(0.0, 1.0, rows), _PUFFS), np.tile(np.linspace(-1.0, 1.0, _PUFFS), rows)
     rng = np.random.default_rng(5)  # the same cloud in every picture
-    half = 0.3 - 0.12 * share * (top - base) / room
+    half = 0.36 - 0.06 * share * (top - base) / room
     radius = 1.2 + 0.5 * rng.random(share.size)
-    across = _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size))
+    across = _CLOUD_MIDDLE + half * (place + 0.05 * rng.normal(size=share.size))
     above = Rectangle((0.0, base), 1.0, room, transform=axes.transData)
     for puffs in _puffs(axes, across, base + share * (top - base), radius, theme):
         puffs.set_clip_path(above)
     inside = float(half.min())  # half width of a rectangle that fills gaps between the puffs
-    gaps = Rectangle((_MIDDLE - inside, base), 2.0 * inside, top - base, color=_CLOUD, linewidth=0.0, zorder=1.95)
+    gaps = Rectangle((_CLOUD_MIDDLE - inside, base), 2.0 * inside, top - base, color=_CLOUD, linewidth=0.0, zorder=1.95)
     axes.add_patch(gaps)
 
 

@@ -1,6 +1,6 @@
 """The figure of liquid and vapour at several temperatures: ln p against 1/T (Clausius and Clapeyron), both densities.
 
-It shows a sweep over the temperature. Each run has measured by itself a vapour pressure p and the slope L/ΔZ that ln p
+It shows a sweep over the temperature. Each run has measured by itself a vapour pressure p and the slope L/RΔZ that ln p
 must have against 1/T at its temperature. The lines have these slopes: nothing is fitted.
 """
 
@@ -24,7 +24,7 @@ _NEAR = 0.8
 _REACH = 0.45
 """Length of the line of a run to each side of its point, in mean distances between points."""
 _DENSE = {"liquid_density": "liquid", "vapor_density": "vapour"}
-_TOO_HIGH = "Both meet at a temperature that is too high: the law of their difference holds only near it."
+_TOO_HIGH = "The critical temperature comes out too high: the law of the densities' difference holds only close to it."
 
 
 def is_coexistence(dataset: xr.Dataset, names: list[str]) -> bool:
@@ -40,8 +40,9 @@ def _known(data: xr.Dataset) -> NDArray[np.bool_]:
 def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
     """Return a sweep with the panels of ln p against 1/T and of the densities of liquid and vapour.
 
-    Its headlines are the slope of ln p through all points, with the mean of the slopes L/ΔZ that the runs have measured
-    as its theory, and, if enough temperatures are near it, the critical temperature. ``runs`` says what a point is.
+    Its headlines are the slope of ln p through all points, with the mean of the slopes L/RΔZ that the runs have
+    measured as its theory, and, if enough temperatures are near it, the critical temperature. ``runs`` says what a
+    point is.
     """
     data = dataset.isel(temperature=np.flatnonzero(_known(dataset)))
     settings = stated(data, "atmosbox_parameters", dict).get("settings", {})
@@ -50,7 +51,7 @@ def coexistence(dataset: xr.Dataset, runs: str) -> xr.Dataset:
     flat = _curves(data, fluid, strength).assign(_slopes(data))
     lines = [
         Line("inverse", "p", runs, error="p_se"),
-        Line("inverse_ends", "slope", "slope L/ΔZ of each run", "reference"),
+        Line("inverse_ends", "slope", "slope −L/RΔZ of each run", "reference"),
     ]
     if fluid is not None:
         lines.append(Line("inverse_fine", "published", "published simulations", "theory"))
@@ -127,7 +128,7 @@ def _slopes(data: xr.Dataset) -> dict[str, Any]:
         return {}
     weight = 1.0 / spread**2
     within = float((weight * slope).sum() / weight.sum()), float(weight.sum() ** -0.5)
-    labels = "slope of ln p against 1/T through the points", "L/ΔZ, measured within the runs"
+    labels = "slope of ln p against −1/T through the points", "L/RΔZ, measured within the runs"
     return _headline("steepness", theory.slope_of_pressure(kelvin, pressure, error), within, *labels)
 
 

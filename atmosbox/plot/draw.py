@@ -165,7 +165,12 @@ def draw_guides(axes: Axes, panel: Panel, theme: Theme) -> None:
         begins = panel.start[0] or min(float(points[0, 0]) for points in curves), panel.start[1]
         ring: dict[str, Any] = {"markersize": 1.6 * theme.marker, "markerfacecolor": "white", "markeredgecolor": DARK}
         axes.add_artist(Line2D(begins[:1], begins[1:], marker="o", zorder=4.5, clip_on=False, **ring))
-        axes.annotate("start", begins, (1.5 * theme.marker, gap), **look | {"color": DARK})
+        # above the point and to the right; a little lower where the curve would cross the word
+        right, wide = 1.8 * theme.marker, 2.5 * theme.text
+        along, rise = np.diff(axes.transData.transform(curves[0][:2]), axis=0).sum(axis=0)
+        crosses = rise * (right + wide) > along * gap and rise * right < along * (gap + theme.text)
+        up = -0.4 * theme.text if panel.kind == "line" and crosses else gap
+        axes.annotate("start", begins, (right, up), **look | {"color": DARK})
 
 
 def from_start(panel: Panel, line: Line, values: Curve) -> Curve:
@@ -182,21 +187,26 @@ def draw_lines(dataset: xr.Dataset, axes: Axes, panel: Panel, theme: Theme) -> l
     """Draw the curves of one run, and return the legend entries."""
     artists: dict[str, tuple[Artist, ...]] = {}
     for place, line in enumerate(panel.lines):
-        index = [before.role for before in panel.lines[:place]].count(line.role)
+        # curves of one label look alike
+        index = len({each.label for each in panel.lines[:place] if each.role == line.role} - {line.label})
         if panel.kind == "histogram" and line.role == "data":
             drawn = draw_steps(axes, panel, line, dataset, theme, index)
         else:
             values = from_start(panel, line, curve(dataset, panel, line))
             drawn = draw_line(axes, panel, line, values, theme, index)
         artists.setdefault(line.label, drawn)
-    return [(drawn, label) for label, drawn in artists.items()]
+    first = {line.label: line.role != "data" for line in reversed(panel.lines)}
+    return [(artists[label], label) for label in sorted(artists, key=first.__getitem__)]
 
 
 def set_limits(axes: Axes, panel: Panel) -> None:
     """Set the limits of axes: no margin beside a curve of many values, and heights that begin at zero."""
     values = max((np.size(line.get_xdata()) for line in axes.lines), default=0)
-    across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= MOST_POINTS else 0.0)
-    axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
+    across = {"profile": 0.07, "histogram": 0.0}.get(
+        panel.kind, 0.03 if panel.averages or values <= MOST_POINTS else 0.0
+    )
+    up = 0.02 if panel.kind != "line" else 0.15 if panel.start else 0.07
+    axes.margins(x=across, y=up)
     if panel.y_limits:
         axes.update_datalim([(0.0, value) for value in panel.y_limits], updatex=False)
     axes.autoscale_view()

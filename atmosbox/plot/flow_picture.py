@@ -19,33 +19,24 @@ _COLOURS = "inferno"  # dark is cold, light is warm, in print too
 _SHARE = 1 / 15  # of the frames, of which a picture shows the mean
 _BAR = 0.125  # width of the colour bar with its numbers, in widths of the page
 _SLOWEST = 0.15  # least speed of the longest arrow, in units of the thermal speed of a molecule
-_ARROWS = 8  # greatest number of arrows along a box
+_ARROWS = 7  # greatest number of arrows along a box
 _AROUND = 4.8  # height of titles and numbers around the boxes, in units of the type size
 _TALLEST = 0.3  # height of the boxes, in widths of the page or in heights of a screen
 
 
 def instants(dataset: xr.Dataset) -> dict[str, tuple[int, int]]:
-    """Return the first and the last frame of each picture by its title: start, onset and end, or start and end.
+    """Return the first and the last frame of each of two pictures by its title.
 
-    The onset is where the rolls first come to half of their speed in the last quarter of the run. There is none where
-    the wind blows from the first moment on.
+    ``mean_wind_speed`` is given only if there is more wind than chance.
 
-    >>> wind = ("elapsed_time", np.r_[np.zeros(30), np.arange(30.0)])
-    >>> instants(xr.Dataset({"roll_speed": wind}))
-    {'Start: no wind': (0, 4), 'Onset: rolls begin': (40, 44), 'Warm air rises': (56, 60)}
+    >>> frames = ("elapsed_time", np.zeros(60))
+    >>> instants(xr.Dataset({"roll_speed": frames, "mean_wind_speed": 20.0}))
+    {'start': (0, 4), 'warm air rises': (56, 60)}
     """
-    speed = dataset["roll_speed"].values
-    frames = len(speed)
+    frames = dataset.sizes["elapsed_time"]
     part = max(1, round(_SHARE * frames))
-    late = speed[-max(1, frames // 4) :]
-    found = {"Start: no wind": (0, part)}
-    if not (late > 0.0).all():
-        return found | {"End: still at rest": (frames - part, frames)}
-    means = np.convolve(speed, np.ones(part) / part, "valid")
-    first = int(np.argmax(means >= 0.5 * late.mean()))
-    if 2 * part <= first <= frames - 2 * part:
-        found["Onset: rolls begin"] = first, first + part
-    return found | {"Warm air rises": (frames - part, frames)}
+    moves = float(dataset.get("mean_wind_speed", math.nan)) > 0.0
+    return {"start": (0, part), "warm air rises" if moves else "end": (frames - part, frames)}
 
 
 def flow_height(dataset: xr.Dataset, look: Theme) -> float:
@@ -82,10 +73,11 @@ def put_flow(dataset: xr.Dataset, look: Theme, measure: TextMeasure, top: float)
         _draw(axes, edges, picture, norm, fastest, look)
         first, last = time[span[0], 0], time[span[1] - 1, 1]
         digits = 0 if last - first >= 1.0 else 1
-        axes.set_title(words, loc="left", fontsize=look.title, weight="bold", pad=3.0)
+        heading = f"{first:.{digits}f}–{last:.{digits}f} min: {words}"
+        axes.set_title(heading, loc="left", fontsize=look.title, weight="bold", pad=3.0)
         axes.set_ylabel("" if place else "height (km)")
         axes.tick_params(labelleft=not place)
-        axes.set_xlabel(f"width (km), {first:.{digits}f} to {last:.{digits}f} min", labelpad=1.0)
+        axes.set_xlabel("width (km)", labelpad=1.0)
     key = f"longest arrow\n{fastest:.0f} m/s"
     measure.write(key, wide, top + 2.0 * look.text + box, ha="right", va="top", fontsize=look.small)
     left = (4.2 * look.text + (1.0 - _BAR) * wide - 1.2 * look.text) / wide

@@ -139,6 +139,7 @@ class Graph(NamedTuple):
     column: int
 
 
+_BELOW_PICTURES = 0.75  # height of the graphs below pictures, in heights of graphs alone
 _SMALLEST = 0.6  # least size of a label that is too long for its axis, in units of the type size
 
 
@@ -157,7 +158,8 @@ def page(
         above = put_heading(measure, heading or str(dataset.attrs.get("title", "")), 1.3 * look.title, look)
         above += put_numbers(measure, list(chain(*readings)), look, above)
         if look.grows:
-            drawing.set_figheight(drawing.get_figheight() + (above + height) / 72)
+            graphs_height = drawing.get_figheight() * (_BELOW_PICTURES if height else 1.0)
+            drawing.set_figheight(graphs_height + (above + height) / 72)
         graphs = put_panels(drawing, panels, look, dataset, draw) if panels else []
         put_footer(measure, small, look)
         settle(measure, graphs, look, above + height)
@@ -294,6 +296,11 @@ def _write_title(measure: TextMeasure, graph: Graph, edge: float, height: float,
     left = (edge - extent.x0) / extent.width
     # With y given, matplotlib does not look for ticks that the title would have to avoid.
     graph.axes.set_title(title, loc="left", x=left, y=1.0, pad=height, fontsize=look.title, weight="bold")
+
+
+def on_slide(panels: tuple[Panel, ...]) -> tuple[Panel, ...]:
+    """Return the panels for which a slide has room: the first of each column, of two columns."""
+    return tuple(panels[column[0]] for column in _columns(panels)[:2])
 
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:

@@ -17,7 +17,7 @@ from atmosbox.plot.curve import curve
 from atmosbox.plot.discs import colour_bar
 from atmosbox.plot.draw import Curves, Entry, draw, draw_lines, hollow_points
 from atmosbox.plot.flow_picture import flow_height, put_flow
-from atmosbox.plot.layout import Draw, TextMeasure, page
+from atmosbox.plot.layout import Draw, TextMeasure, on_slide, page
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.theme import Theme, find, style
 from atmosbox.scene.panels import Line, Panel, from_json
@@ -56,12 +56,11 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     ('time (ns)', 'temperature (°C)')
     """
     look = find(theme)
-    panels = panels_of(dataset)
+    panels = panels_of(dataset) if look.grows else on_slide(panels_of(dataset))
     small = footer(dataset) + explanation(dataset, panels)
-    readings = headlines(dataset, panels)
     height = flow_height(dataset, look)
-    if height and not look.grows:  # a slide has no room for more below the pictures of the wind
-        panels, readings = panels[:2], []
+    # a slide has no room for numbers above pictures of the wind
+    readings = headlines(dataset, panels) if look.grows or not height else []
     put = partial(put_flow, dataset, look) if height else None
     return page(panels, look, dataset, painter([dataset], look), readings, small, height, put)
 

@@ -37,7 +37,7 @@ _UNITS = {
     "m s-1": Unit("m s-1"), "km h-1": Unit("m s-1", 1, 3.6), "m s-2": Unit("m s-2"),
     "K m-1": Unit("K m-1"), "K km-1": Unit("K m-1", 1, 1e3), "K s-1": Unit("K s-1"),
     "K ns-1": Unit("K s-1", 1e9), "J mol-1 K-1": Unit("J mol-1 K-1"),
-    "J": Unit("J"), "zJ": Unit("J", 1, 1e21), "J-1": Unit("J-1"), "zJ-1": Unit("J-1", 1e21),
+    "J": Unit("J"), "mJ": Unit("J", 1, 1e3), "zJ": Unit("J", 1, 1e21), "J-1": Unit("J-1"), "zJ-1": Unit("J-1", 1e21),
     "s-1": Unit("s-1"), "ns-1": Unit("s-1", 1e9), "kg m-3": Unit("kg m-3"), "g m-3": Unit("kg m-3", 1, 1e3),
     "kg": Unit("kg"), "g": Unit("kg", 1, 1e3),
     "N m-1": Unit("N m-1"), "mN m-1": Unit("N m-1", 1, 1e3),

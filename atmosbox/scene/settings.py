@@ -171,8 +171,8 @@ class Parameter:
         if limit is not None:
             given = shown(value.strip() if isinstance(value, str) else value)
             given = given if unit or self.unit == "1" else f"{given} {self.unit}"
-            side = "below the lowest" if number < limit else "above the highest"
-            refusal = self._refusal(given, f"is {side} allowed, {self.allowed}", limit)
+            side = "below" if number < limit else "above"
+            refusal = self._refusal(given, f"is {side} the allowed range, {self.allowed}", limit)
             if not unit and self.unit == "degC" and self._limit(number - 273.15) is None:
                 refusal.remedy += (", or ", Setting(self.name, f"{exact}K"), " if it is in kelvin")
             raise refusal

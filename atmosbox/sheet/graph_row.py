@@ -32,24 +32,31 @@ def until(prepared: Prepared, said: Callable[[str], str] = str) -> str:
 
 
 def graph_rows(runs: Sequence[Trial], said: Callable[[str], str] = str) -> list[dict[str, Any]]:
-    """Return the rows of the table: for each measured curve its graph, its name, and a line for each run.
+    """Return the rows of the table: for each measured curve its graph, its name, and a line for each run that has it.
 
     A line has the letter of the run and, if it has been made, the value from the graph, that of theory, and the
     difference. ``said`` translates names.
     """
-    prepared = runs[0].prepared
-    panels = prepared.module.panels
     found = []
-    for panel in panels(prepared.settings) if callable(panels) else panels:
+    shown = [{(line.x, line.y, line.label) for panel in _panels(run) for line in panel.lines} for run in runs]
+    for panel in _panels(runs[0]):
         for line in panel.lines if panel.kind in ("line", "profile", "histogram") else ():
             if line.role != "data" or known(line.y) is None:
                 continue
-            name, shown = (line.x, panel.x_unit) if panel.kind == "profile" else (line.y, panel.y_unit)
-            unit = spelled(shown or variable(name).units or "1")
+            name, unit = (line.x, panel.x_unit) if panel.kind == "profile" else (line.y, panel.y_unit)
+            unit = spelled(unit or variable(name).units or "1")
             curve = f"{said(line.label)}, {said(_where(panel, line))}{f' [{unit}]' if unit else ''}"
             theory = _theory(panel, line)
-            lines = [tuple(map(said, _line(run, panel, line, theory))) for run in runs]
+            those = [run for run, curves in zip(runs, shown, strict=True) if (line.x, line.y, line.label) in curves]
+            lines = [tuple(map(said, _line(run, panel, line, theory))) for run in those]
             found.append({"graph": said(panel.title), "curve": curve, "lines": lines})
+    return found
+
+
+def _panels(run: Trial) -> Sequence[Panel]:
+    """Return the panels of the page of a run."""
+    panels = run.prepared.module.panels
+    found: Sequence[Panel] = panels(run.prepared.settings) if callable(panels) else panels
     return found
 
 

@@ -69,6 +69,7 @@ _SHEET = {
     "row": ([_ROW], ()),  # of the table; if there are none, it has all headlines of the scene
     **{name: ([_QUESTION], ()) for name in SECTIONS},
     "constants": ("text", ""),  # that the formulas need, printed above the table
+    "copying": ("text", ""),  # about the theory in the table, printed after them; not in a sheet for pages
     "leaves_out": ("text", ""),  # what the model leaves out; if it is empty, the scene's docstring tells it
 }
 

@@ -82,7 +82,7 @@ class AnyScene(NamedTuple):
 
 _COMMAND = "`--"
 """A question that contains this needs commands."""
-_KNOBS = "Begin A again, and turn a knob above its graphs while it plays. Write down first what each graph will do."
+_SLIDERS = "Begin A again, and move a slider above its graphs while it plays. Write down first what each graph will do."
 _NOT_HERE = "*Written for the default settings: the numbers are not available with these settings.*"
 _WITH_CARE = (
     "The numbers are of these runs, but the answers were written for the default settings: read them with care."
@@ -234,8 +234,11 @@ def _written(
     content["leaves_out"] = content["leaves_out"] or left_out(story).replace("<", "&lt;")
     for name in ("predict", *SECTIONS) if lab else ():
         content[name] = [each for each in content[name] if each["lab"] and _COMMAND not in each["ask"]]
+    for each in content["predict"] if lab else ():
+        if each["sketch"] and "logarithm" in each["sketch"]["x"]:  # the axis of time of a page is linear
+            each["sketch"]["x"] = each["sketch"]["x"].partition(",")[0]
     if lab and build(first).knobs:
-        content["try"] = [*content["try"], {"ask": said(_KNOBS), "answer": "", "lines": 4}]
+        content["try"] = [*content["try"], {"ask": said(_SLIDERS), "answer": "", "lines": 4}]
     content |= {"lab": lab, "graphs": graph_rows(runs, said) if lab else []}
     if lab:
         content["row"] = []

@@ -74,10 +74,10 @@ class Replay:
             knob = knobs.get(turn.name)
             if knob is None:
                 which = f"it has {', '.join(knobs)}" if knobs else "it has none"
-                refuse(self.link, f"turns the knob {turn.name}, which the scene does not have ({which})")
+                refuse(self.link, f"moves the slider {turn.name}, which the scene does not have ({which})")
             if turn.value is not None and not knob.low <= turn.value <= knob.high:
                 allowed = f"{knob.low:g} to {knob.high:g} {knob.unit}".strip()
-                refuse(self.link, f"turns {turn.name} to {turn.value:g}, outside its range of {allowed}")
+                refuse(self.link, f"moves {turn.name} to {turn.value:g}, outside its range of {allowed}")
 
     def attributes(self, setup: Setup, others: Mapping[str, Any]) -> dict[str, Any]:
         """Return the attributes of a file that say which knobs are turned; its panels show no headlines.
@@ -126,7 +126,7 @@ def read_link(text: str) -> tuple[str, dict[str, str], Replay]:
     made = tuple(Turn(int(t[1]), t[2], None if t[3] == "start" else float(t[3])) for t in turns if t is not None)
     frames, in_order = int(found["frames"]), all(a.frame <= b.frame for a, b in itertools.pairwise(made))
     if len(made) < len(turns) or len(made) > _MOST_TURNS or not in_order:
-        refuse(text, "has turns of knobs that cannot be read")
+        refuse(text, "has moves of sliders that cannot be read")
     if max(frames, *(turn.frame for turn in made), 0) > _MOST_FRAMES:
         refuse(text, f"is of more than {_MOST_FRAMES} frames")
     if found["prediction"] and not _PREDICTION.fullmatch(found["prediction"]):

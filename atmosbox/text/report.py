@@ -64,7 +64,7 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
     expected within: 4 standard errors (chance) plus 0.5 K, because the box is small.
     """
     if not headlines:
-        return wrapped("Nothing is compared with theory: the run is too short, or a knob was turned.", width)
+        return wrapped("Nothing is compared with theory: the run is too short, or a slider was moved.", width)
     rows = [_row(each) for each in headlines if each.resolved and not each.program]
     header = ["quantity", "measured", "theory", "difference", "expected within", "agrees?"]
     filled = [k for k in range(len(header)) if k < 2 or any(row[k] for row in rows)]

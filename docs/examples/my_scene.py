@@ -2,6 +2,7 @@
 
 Between a hot and a cold wall, five millimetres apart, there is so little air that molecules fly across
 without colliding. Each carries heat from the hot wall to the cold one; half as many carry half as much.
+Left out: radiation, which carries more, even between silvered walls.
 """
 
 import numpy as np

@@ -78,11 +78,6 @@ def kick_first(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
     return z + v * dt, v
 
 
-def drift_first(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
-    z = z + v * dt
-    return z, v - dt
-
-
 def verlet(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
     middle = v - 0.5 * dt
     return z + middle * dt, middle - 0.5 * dt
@@ -98,7 +93,7 @@ def parabola(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
 
 INTEGRATORS = (
     Integrator("Euler, flip", explicit, "flip", 0.5),
-    Integrator("Euler, drift first, mirror", drift_first, "mirror", 1.0),
+    Integrator("Euler, mirror", explicit, "mirror", 1.0),
     Integrator("Euler, undo", explicit, "undo", 1.0),
     Integrator("semi-implicit Euler, flip", kick_first, "flip", -0.5),
     Integrator("leapfrog, flip", kick_first, "leapfrog", -0.5),

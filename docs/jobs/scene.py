@@ -9,8 +9,8 @@ from atmosbox.simulation import runner
 from atmosbox.text.report import headline_lines
 
 WIDTH = 100
-DOTS_PER_INCH = 100
-WITH_BOX = {"lifting-dry": 160, "attraction": 130}
+DOTS_PER_INCH = 185
+WITH_BOX = {"attraction": 130}
 """Scenes whose figure shows the molecules, as `atmosbox plot --with-box` draws it, with its dots per inch."""
 
 
@@ -27,7 +27,7 @@ def scene(name: str, found: Findings) -> None:
             )
     lines = headline_lines(outcome.headlines, WIDTH)
     found.text("\n".join(["```text", *lines, "```"]))
-    drawing = figure_with_box(outcome.dataset) if name in WITH_BOX else figure(outcome.dataset, "slides")
+    drawing = figure_with_box(outcome.dataset) if name in WITH_BOX else figure(outcome.dataset)
     found.figure(drawing, name, WITH_BOX.get(name, DOTS_PER_INCH))
 
 

@@ -33,7 +33,7 @@ def waiting(found: Findings) -> None:
         for each in results("scenes")
         if each["scene"] in SCENES
     ]
-    found.table(["scene", "processor time [s]", "of it the engine [s]"], rows)
+    found.table(["scene", "processor time [s]", "compiled code alone [s]"], rows)
 
 
 @job("pace-in-steps", quick=True)

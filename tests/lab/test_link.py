@@ -168,15 +168,15 @@ def test_a_saved_table_names_the_command_that_repeats_it_in_python_whose_file_ca
         (__version__, "9.8", f"is of atmosbox 9.8, and this is {__version__}, whose numbers may differ: type pip"),
         ("=temperature", "=nowhere", "is for a scene that there is not, nowhere: type atmosbox list."),
         ("=temperature", "=..%2Fown.py", "is for a scene of your own, whose file must be typed, ../own.py: type"),
-        ("molecules=50", "molecules=0", "molecules = 0 is below the lowest allowed"),
+        ("molecules=50", "molecules=0", "molecules = 0 is below the allowed range"),
         ("molecules=50", "colour=5", "colour = 5 is not a setting of this scene: give one of molecules"),
         ("molecules=50", "molecules=50&molecules=60", "has a setting twice"),
         ("=temperature&molecules=50", "=lifting-sounding&sounding=%2Fetc%2Fpasswd", "names a file, sounding = /etc"),
-        ("3:temperature", "3:wind", "turns the knob wind, which the scene does not have (it has temperature): copy"),
-        (":60", ":501", "turns temperature to 501, outside its range of -200 to 500 degC"),
-        (":60", ":nan", "has turns of knobs that cannot be read"),
-        (":60", ":60,2:temperature:50", "has turns of knobs that cannot be read"),  # backwards
-        (":60", ":60" + ",3:temperature:60" * 5_000, "has turns of knobs that cannot be read"),  # too many
+        ("3:temperature", "3:wind", "moves the slider wind, which the scene does not have (it has temperature): copy"),
+        (":60", ":501", "moves temperature to 501, outside its range of -200 to 500 degC"),
+        (":60", ":nan", "has moves of sliders that cannot be read"),
+        (":60", ":60,2:temperature:50", "has moves of sliders that cannot be read"),  # backwards
+        (":60", ":60" + ",3:temperature:60" * 5_000, "has moves of sliders that cannot be read"),  # too many
         (":60", ":60" + ",3:temperature:60" * 20_000, "is not a link of a run"),
         ("frames=9", "frames=1000001", "is of more than 1000000 frames"),
         ("&frames", "&predict=air_temperature:1,2,3,4&frames", "has a prediction that cannot be read: it needs a"),
@@ -228,6 +228,7 @@ def test_all_scenes_come_with_an_index_in_the_order_of_teaching(usual_tab, tmp_p
     ]
     assert usual_tab.evaluate("[...document.images].map((each) => each.naturalWidth)") == [480, 480]
     assert usual_tab.locator("small").first.inner_text() == "school · 10 minutes"
+    assert usual_tab.locator("small").last.inner_text() == f"Made by atmosbox {__version__}."
     usual_tab.click("text=Do light or heavy discs")
     usual_tab.wait_for_selector("body[data-ready]")
     ended = typed("lab", "--all", "--out", tmp_path / "labs")

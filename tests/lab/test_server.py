@@ -85,7 +85,7 @@ def test_only_our_own_page_is_served_and_only_to_who_has_the_token(site):
 
 def test_what_is_refused_is_said_in_a_sentence_for_the_page(site):
     cases = [
-        ({"molecules": 0}, "molecules = 0 is below the lowest allowed"),
+        ({"molecules": 0}, "molecules = 0 is below the allowed range"),
         ({"molecules": "many"}, "molecules = many"),
         ({"molecules": {"a": [1]}}, "molecules"),
         ({"warmth": 3}, "warmth = 3 is not a setting of this scene"),

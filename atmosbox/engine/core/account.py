@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.jit import quietly
 from atmosbox.engine.core.state import Tallies, Walls
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 
@@ -149,7 +148,6 @@ class Account(ABC):
         """Number of hits on each wall since the start."""
         return np.array(self._tallies.hits)
 
-    @quietly
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
         laws, time = enumerate(self._walls.law), self.time

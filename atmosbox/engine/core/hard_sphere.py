@@ -14,9 +14,10 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
     r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
     With the position r [length] and the velocity v [length/time] of one molecule relative to the other they touch when
-    :math:`|r + v t|^2 = \sigma^2`. So :math:`b = r \cdot v`, which is below zero while they approach, and
-    :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) instead of b. For a pair that moves apart it
-    is then not above zero either, unless the two overlap. So one test rejects nearly all pairs that do not meet.
+    :math:`|r + v t|^2 = \sigma^2`, where :math:`\sigma` is the sum of their radii. So :math:`b = r \cdot v`, which is
+    below zero while they approach, and :math:`c = r^2 - \sigma^2`. The discriminant is computed with min(b, 0) instead
+    of b. For a pair that moves apart it is then not above zero either, unless the two overlap. So one test rejects
+    nearly all pairs that do not meet.
     """
     b = rx * vx + ry * vy + rz * vz
     speed_squared = vx * vx + vy * vy + vz * vz
@@ -29,7 +30,7 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
 def earlier_root(discriminant, b, c):
     """Return the time until two molecules touch: the earlier root of `quadratic` [time from now], 0 if it is past.
 
-    Call it only if the discriminant is above zero and b below zero: otherwise the two never touch. The usual formula,
+    Call it only if the discriminant d is above zero and b below zero: otherwise the two never touch. The usual formula,
     (-b - sqrt(d)) / v^2, subtracts nearly equal numbers when the two nearly touch, and loses digits; c / (-b + sqrt(d))
     is the same root without a difference. A pair that overlaps by rounding touches at once if it approaches, and never
     if it moves apart (Bannerman et al. 2014, doi:10.1007/s40571-014-0021-8).
@@ -66,11 +67,12 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 def share_energy(energy, dimensions, rotation, other_rotation, state):
     r"""Share the energy of a contact between relative motion and the two rotations; return the three shares [energy].
 
-    They are in the ratio of three gamma variates, of shapes :math:`(d + 1)/2` for the relative motion in d dimensions
-    and :math:`\zeta_i/2`, :math:`\zeta_j/2` for the rotations, with :math:`\zeta` rotational degrees of freedom
-    (Borgnakke, C., Larsen, P. S. 1975, doi:10.1016/0021-9991(75)90094-7). In space the first shape is 2, and not 3/2 as
-    for a molecule at any moment: hard spheres collide at a rate proportional to their relative speed, so fast pairs
-    collide more often. With this shape detailed balance holds.
+    They are in the ratio of three random numbers with gamma distributions, of shapes :math:`(d + 1)/2` for the relative
+    motion in d dimensions and :math:`\zeta_i/2`, :math:`\zeta_j/2` for the rotations, with :math:`\zeta` rotational
+    degrees of freedom (Borgnakke, C., Larsen, P. S. 1975, doi:10.1016/0021-9991(75)90094-7). In three dimensions the
+    first shape is 2. For the kinetic energy of a molecule it would be 3/2; but hard spheres collide at a rate
+    proportional to their relative speed, so fast pairs collide more often. With this shape collisions do not change the
+    distribution of energy in equilibrium.
 
     >>> import numpy as np
     >>> round(sum(share_energy(3.0, 3.0, 2.0, 2.0, np.array([1], np.uint64))), 12)

@@ -8,12 +8,9 @@ import functools
 import os
 import threading
 from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 import numpy as np
-
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
 
 POSITIVE = (1 << 40) - 1
 """``index & POSITIVE`` tells the compiler that an index is not negative: no code for counting from the end is made."""
@@ -31,17 +28,17 @@ class _Quiet(threading.local):
 _QUIET = _Quiet()
 
 
-def quietly(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Return a function that numpy runs without warnings; plain kernels that it calls need not switch them off."""
+def _quietly(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that numpy runs without warnings; what it calls need not switch them off again."""
 
     @functools.wraps(function)
-    def run(*arguments: _P.args, **named: _P.kwargs) -> _R:
+    def run(*arguments: Any) -> Any:
         if _QUIET.now:
-            return function(*arguments, **named)
+            return function(*arguments)
         _QUIET.now = True
         try:
             with np.errstate(all="ignore"):
-                return function(*arguments, **named)
+                return function(*arguments)
         finally:
             _QUIET.now = False
 
@@ -78,7 +75,7 @@ class Kernel:
     def _run(self) -> Any:
         """The function that Python calls."""
         if self._plain:
-            return quietly(self.py_func)
+            return _quietly(self.py_func)
         return self._for_python() if self._for_python else self.compiled
 
     @property
@@ -136,7 +133,7 @@ def kernel(
     if function is None:
         return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel, plain=plain)
     if not COMPILED:
-        return quietly(function)
+        return _quietly(function)
 
     def compiled(**kind: bool) -> Any:
         from atmosbox.engine.core import compiler

@@ -12,7 +12,7 @@ class Schedule(Protocol):
     """A number as a function of time."""
 
     def points(self) -> list[tuple[float, float]]:
-        """Return the corners (time, value) of the polygon; it is constant before the first and after the last."""
+        """Return points (time, value); straight lines connect them, and outside the value stays constant."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ MOLECULE = np.dtype(
 """One molecule, one 64-byte line of memory.
 
 Its centre [length] and velocity [length/time] *at the time of its clock* [time], the number of encounters it has had,
-and its kind (a row of `Kinds`). These fields change only at an encounter.
+and its kind (a row of `Kinds`). These fields change at an encounter; the centre also at a periodic boundary, by a
+length of the box, and the clock when all clocks are set back. In the liquid a molecule has a clock of infinity.
 """
 
 _NAMES = ["contact_time", "partner", "partner_count", "slot_x", "slot_y", "slot_z", "what"]
@@ -25,7 +26,10 @@ EVENT = np.dtype({"names": _NAMES, "formats": ["f8", "u4", "u4", "u2", "u2", "u2
 The time of its next contact [time], the partner, and how many encounters the partner had had when that contact was
 predicted (if it has had more since, the prediction is stale); its slots along the three axes (`cells`); and which of
 contact, crossing or wall hit comes first. A contact with itself means that its events are predicted again at that time.
-The last eight bytes, which have no name here, are its places in the rows of its cells (`rows`).
+The last eight bytes, which have no name here, are its places in the rows of its cells (`rows`)::
+
+    byte   0             8        12             16      18      20      22    23    24 ... 31
+           contact_time  partner  partner_count  slot_x  slot_y  slot_z  what  free  places
 """
 
 SLOT_OFFSET = 16
@@ -75,8 +79,8 @@ class Box(namedtuple("Box", "length_x length_y length_z inverse_x inverse_y inve
     """The box: its sides, and the constants that hold everywhere in it.
 
     Sides [length], ``inverse_*`` 1/side on a periodic axis and 0 on a walled one [1/length], gravity along -z
-    [length/time^2], whether the gas is plane, the share of contacts that exchange energy with rotation, and the
-    time [time] that many events must take at least: within less, the run counts as stalled.
+    [length/time^2], whether the gas is plane, the share of contacts that exchange energy with rotation, and
+    ``stall`` [time]: if very many events happen within less time, the run counts as stalled.
     """
 
 
@@ -122,10 +126,10 @@ class Calendar(namedtuple("Calendar", "time winner leaf node depth")):
 class Walls(namedtuple("Walls", "law accommodation schedule schedule_time schedule_kT piston epoch")):
     """The six walls, in the order x low, x high, y low, y high, z low, z high.
 
-    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, and the temperatures as polygons in time:
-    wall w has the points ``schedule[w] <= k < schedule[w + 1]`` of ``schedule_time`` [time] and
-    ``schedule_kT`` [energy]. ``piston`` is the motion of the ceiling: (position [length], velocity [length/time],
-    time at which it had that position [time]). ``epoch`` is the time at which all clocks read zero.
+    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, and the temperatures as straight lines between points
+    in time: wall w has the points ``schedule[w] <= k < schedule[w + 1]`` of ``schedule_time`` [time] and
+    ``schedule_kT`` [energy]. ``piston`` is the motion of the ceiling: (position [length], velocity [length/time], time
+    at which it had that position [time]). ``epoch`` is the time at which all clocks read zero.
     """
 
 

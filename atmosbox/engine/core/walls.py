@@ -152,6 +152,7 @@ def resolve_wall_hit(wall, time, velocity, spin, kind, walls, planar, state):
     """
     vx, vy, vz = velocity
     mass, rotation = kind
+    # walls are numbered 2 * axis, plus 1 for the upper one
     axis = wall >> 1
     # the velocities along the wall's axis, and along the two others in the order x, y, z
     came, first, second = (vx, vy, vz) if axis == 0 else ((vy, vx, vz) if axis == 1 else (vz, vx, vy))
@@ -163,12 +164,12 @@ def resolve_wall_hit(wall, time, velocity, spin, kind, walls, planar, state):
         kT = wall_kT(walls, wall, time)
         thermal_speed = math.sqrt(kT / mass)
         # away from the wall: Rayleigh's law, from one uniform number; along the wall: two Gaussian numbers
-        outward = 1.0 if wall & 1 == 0 else -1.0
-        went = outward * thermal_speed * math.sqrt(-2.0 * log_of_normal(uniform(state)))
+        inward = 1.0 if wall & 1 == 0 else -1.0
+        went = inward * thermal_speed * math.sqrt(-2.0 * log_of_normal(uniform(state)))
         first, second = gaussian_pair(state)
         first *= thermal_speed
         second *= thermal_speed
-        if planar:
+        if planar:  # no molecule of a plane gas hits the walls along y
             if axis == 0:
                 first = 0.0
             else:

@@ -12,9 +12,10 @@ Testing all pairs would cost the square of their number. Bird's *no time counter
 
 .. math:: \frac{n (n - 1)}{2} \frac{\pi \sigma^2 c_{max}\, \Delta t}{V_{cell}}
 
-of them, with a speed :math:`c_{max}` that no pair exceeds, and accepts each with probability :math:`c / c_{max}`, which
-gives the same rates. A collision conserves the momentum and energy of its pair and gives the relative velocity a random
-direction, as for spheres that meet off centre at random. Molecules have no excluded volume: the gas is ideal.
+of them, with a speed :math:`c_{max}` that hardly any pair exceeds (it is raised when one does), and accepts each with
+probability :math:`c / c_{max}`, which gives the same rates. A collision conserves the momentum and energy of its pair
+and gives the relative velocity a random direction, as for spheres that meet off centre at random. Molecules have no
+excluded volume: the gas is ideal.
 
 The random numbers of a cell follow only from seed, step and cell, not from those of other cells. So a run is the same
 for any number of threads.
@@ -60,7 +61,7 @@ _SHARED = 8  # number of steps after which cells are shared again among threads;
 def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: str) -> tuple[int, int, int]:
     """Return the number of cells with about this edge [length] along each side [length] of a box.
 
-    If hardly any molecules would share a cell they are refused; the message repeats what was ``asked`` for.
+    Cells so small that hardly any molecules would share one are refused; the message repeats what was ``asked`` for.
     """
     x, y, z = (max(1.0, float(np.rint(side / edge))) for side in sides)
     if x * y * z > max(number, 1000) * 10.0:
@@ -90,7 +91,8 @@ def _move(thread, first, last, count, step, air, features):
         mark = workspace.mark[thread, : e - b]
         mark[:] = 0
         cell[:] = 0
-        # which molecules wait must be known before any moves: floor and ceiling are the last walls to be tested
+        # a molecule that will hit a wall waits for `bounce` (smooth sides reflect it at once). Those at the sides are
+        # found first, because `fall` tests floor and ceiling, and moves the others
         if box.inverse_x == 0.0 and not smooth_x:
             wait_at_walls(x, vx, along_x.low, along_x.high, dt, mark)
         if box.inverse_y == 0.0 and not smooth_y:
@@ -99,6 +101,8 @@ def _move(thread, first, last, count, step, air, features):
             fall(z, vz, dt, mark, box.gravity, along_z, cell)
         else:
             turn_round(z, vz, dt, mark, along_z, cell)
+        # smooth sides reflect at once (`fold`); between others those that do not wait fly on (`glide`); on a periodic
+        # axis a molecule that leaves comes back on the other side (`turn_round`)
         if smooth_x:
             fold(x, vx, dt, mark, 1, along_x, cell)
         elif box.inverse_x == 0.0:
@@ -113,7 +117,8 @@ def _move(thread, first, last, count, step, air, features):
             turn_round(y, vy, dt, mark, along_y, cell)
         marked = np.uint32(0)
         # few molecules are marked: those that hit a wall in this step, or wait at one, are treated one by one
-        for q in range(e - b):  # writes a list without a branch
+        # (mark 1: reflected along x, 2: along y, 4: waits)
+        for q in range(e - b):  # the next number overwrites one that is not marked: faster than a condition
             queue[marked] = q
             marked += np.uint32(mark[q] != 0)
         counters = workspace.counters[b // BLOCK]
@@ -167,8 +172,8 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
     def march(columns, grid, gas, box, walls, workspace, tries, run):
         """Advance by some steps; ``run`` is a `March`.
 
-        Each step: fly, let water evaporate and condense, sort the molecules into cells, collide. (Parallel loops of
-        numba take only tuples that are arguments, so the others are made here.)
+        Each step: fly, let water evaporate and condense, sort the molecules into cells, collide. (A parallel loop of
+        numba can use only tuples that are arguments, so `Air` is made inside each loop.)
         """
         tallies, water, dt, ceilings = run.tallies, run.water, run.length, run.ceilings
         threads = grid.place.shape[0] if parallel else 1
@@ -202,10 +207,10 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 for t in prange(threads):
                     first, last = share_of(t, threads, number)
                     count_by_cell(columns.cell, grid.place[t], first, last)
-            # sort: the numbers of all molecules, in the order of their cells; `first` tells where each cell begins
+            # sort: the places of the molecules in the columns, in the order of their cells; a cell begins at `first`
             #
             #   cell       0        1      2
-            #   order    5 0 8  |  3 7  |  1 ...
+            #   order    0 5 8  |  3 7  |  1 ...
             #   first    0         3       5
             reserve_places(grid, cells)
             if parallel and k % _SHARED == 0:

@@ -1,4 +1,4 @@
-"""The exact, event-driven engine. Read its files from top to bottom.
+"""The exact, event-driven engine. docs/engine.md tells where to begin.
 
 `row_cells`    sizes and numbers of cells whose rows hold copies of trajectories
 `cells`        which molecules can meet

@@ -2,7 +2,9 @@
 
 Leaves hold one time per molecule, in groups of eight (a cache line). Above them is a binary
 tournament whose nodes hold the winning (earliest) time *and* its molecule. So the next event is read at the root,
-and a change needs one comparison per level. There is nothing to tune.
+and a change needs one comparison per level. There is nothing to tune. All times stand in one array::
+
+    free | root | 2 nodes | 4 nodes | ... | times of molecules 0 to 7 | of 8 to 15 | ...
 """
 
 import numpy as np
@@ -13,6 +15,7 @@ from atmosbox.engine.core.state import Calendar
 
 def new_calendar(molecules: int) -> Calendar:
     """Return an empty calendar, in which no molecule has an event."""
+    # -(-n // 8): n / 8, rounded up
     groups = -(-max(molecules, 1) // 8)
     depth = max(1, (groups - 1).bit_length())
     leaf = -(-(2 ** (depth + 1)) // 8) * 8
@@ -32,6 +35,7 @@ def schedule(calendar, i, time):
     o = leaf + group
     a0, a1, a2, a3 = times[o], times[o + 1], times[o + 2], times[o + 3]
     a4, a5, a6, a7 = times[o + 4], times[o + 5], times[o + 6], times[o + 7]
+    # the earliest (m) of the eight leaves of its group, and which one it is (w)
     w0 = 1 if a1 < a0 else 0
     m0 = min(a0, a1)
     w1 = 3 if a3 < a2 else 2
@@ -47,6 +51,7 @@ def schedule(calendar, i, time):
     w0 = w2 if m2 < m0 else w0
     best = min(m0, m2)
     winner = group + w0
+    # the node of the group, then each node above it
     node = (calendar.node + (i >> 3)) & POSITIVE
     times[node] = best
     calendar.winner[node] = winner

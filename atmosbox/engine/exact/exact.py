@@ -37,11 +37,11 @@ class Status(IntEnum):
 
     ``DONE``: the requested time is reached; ``BUSY``: as many events are resolved as were requested; ``STALLED``: very
     many events in a vanishing time; ``FULL``: the row of a cell must become longer; ``CRUSHED``: the piston has come
-    too low; ``CROWDED``: there is no free place for a molecule that evaporates. `advance` handles the others:
-    ``MEETS_LIQUID``: the next event is a molecule that meets a pool or a drop, which the caller resolves;
-    ``EPOCH_OVER``: the copies in the rows must be written again before the next event; ``OUTGROWN``: a molecule has
-    risen above the cells, which must be chosen again; ``TURNED``: the piston has a new velocity, and the cells must be
-    chosen again because the height of the box has changed too much.
+    too low; ``CROWDED``: there is no free place for a molecule that evaporates; ``MEETS_LIQUID``: the next event is a
+    molecule that meets a pool or a drop, which the caller resolves; ``EPOCH_OVER``: the copies in the rows must be
+    written again before the next event; ``OUTGROWN``: a molecule has risen above the cells, which must be chosen again;
+    ``TURNED``: the piston has a new velocity, and the cells must be chosen again because the height of the box has
+    changed too much.
     """
 
     DONE = 0
@@ -58,7 +58,7 @@ class Status(IntEnum):
 
 CHECK_EVERY = 1024
 """Number of events between two checks whether the run has stalled."""
-_FLOOR, _CEILING = 4, 5
+_FLOOR, _CEILING = 4, 5  # numbers of walls; `CEILING` is the event with a ceiling that moves
 
 
 @kernel
@@ -113,17 +113,18 @@ def proceed(gas, until, most, modes):
             status = Status.STALLED
             break
         fetch_ahead(gas, gas.calendar.time, gas.calendar.leaf, 1)
+        # what comes: 0 to 5 a boundary or a wall, 6 a contact, 7 the moving ceiling
         event = gas.events[i]
         what = np.int64(event.what)
         # fly the molecule from its own clock to the event: no other molecule moves
         at = motion_at(i, t, gas, modes)
         j = -1
         other = at
-        boundary = CONTACT
+        boundary = CONTACT  # at no boundary
         if what < CONTACT and not is_wall(i, what, gas, modes):
             # a boundary between cells: the molecule's motion does not change, only its cells and its event do
             if modes.rows:
-                boundary = what
+                boundary = what  # `plan`, below, enters it into the new cells
                 entered += 1
             else:
                 crossed = cross(i, what, t, at, gas, modes)
@@ -147,10 +148,12 @@ def proceed(gas, until, most, modes):
                 at, other = meet(i, j, t, at, gas, modes)
                 contacts += 1
             else:
-                # a contact with itself at the time of its clock is a request by `call`, and not a stale prediction
+                # a contact with itself only asks for new predictions; at the time of its clock it is a request by
+                # `call`, which is not counted as stale
                 stale += 1 if j != i or gas.molecules[i].clock < t else 0
                 j = -1
         else:
+            # a wall; under a piston 5 is the upper end of the cells
             if modes.pool and what == _FLOOR:
                 status = Status.MEETS_LIQUID
                 break
@@ -191,10 +194,10 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
         row[:] = 0
         for i in range(gas.molecules.size):
             if modes.phases and math.isinf(gas.molecules[i].clock):
-                continue
+                continue  # it is in the liquid
             at = motion_at(i, now, gas, modes)
             size, _ = size_and_radius(i, gas, modes)
-            # brought back into a periodic box, from the lowest boundary on
+            # in a periodic box: moved by whole lengths into the one that begins at the lowest boundary
             dx, dy, dz = turns_past(at.x, 0, size, gas), turns_past(at.y, 1, size, gas), turns_past(at.z, 2, size, gas)
             molecule = gas.molecules[i]
             molecule.x -= dx
@@ -287,6 +290,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         gas, ascent = by_reference(gas), by_reference(ascent)
         done = 0
         while True:
+            # up to the time at which the piston gets its next velocity, which is then set (`turning`)
             stop, then = ahead(until, gas, ascent)
             status, some = proceed(gas, stop, most - done, modes)
             done += some

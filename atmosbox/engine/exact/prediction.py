@@ -77,12 +77,13 @@ def limits(slot, axis, size, radius, gas, modes):
     """Return the interval along an axis in which the centre stays until it reaches a new cell (or slot) or a wall."""
     boundary = gas.cells.boundary
     if modes.rows:
-        # leaving a cell is not an event here
+        # leaving a cell is not an event here: from slot 2c + 1 it may fly through slots 2c and 2c + 2 too
         low = boundary[size, axis, slot & ~1]
         high = boundary[size, axis, (slot | 1) + 2 * (slot & 1)]
     else:
         low = boundary[size, axis, slot]
         high = boundary[size, axis, slot + 1]
+    # here the boundaries contain no walls, because molecules of one size class differ in radius
     if modes.spanning or (modes.rows and modes.mixed):
         length, inverse = side(axis, gas.box)
         if inverse == 0.0:

@@ -38,11 +38,18 @@ CONTACT = 6
 
 
 _OTHERS = (1 << 64 - BATCH) - 1
-"""The bits that remain in a word of occupied places when those of one block are shifted out."""
+"""The bits that remain in a word of occupied places when those of one block are shifted out.
+
+A shift of a negative number to the right fills it with ones from the left; these bits cut them off.
+"""
 
 
 class Seeker(namedtuple("Seeker", "t at radius fall velocity since slack")):
-    """A molecule that searches for partners, and what the quick test of `screen` needs of it."""
+    """A molecule that searches for partners, and what the quick test of `screen` needs of it.
+
+    ``since`` is the time since the start of the copies' epoch [time], ``fall`` how far a molecule falls from rest in
+    that time [length], ``slack`` what errors the test allows for.
+    """
 
 
 class Found(namedtuple("Found", "at slots after partner full")):
@@ -63,14 +70,14 @@ def _narrowed(x, slot, size, axis, cells):
 
 @kernel
 def _widened(slot, up):
-    """Return the slot of a molecule that reaches the next cell along an axis: that cell and the one before it."""
+    """Return the slot of a molecule that reaches the next cell along an axis: between that cell and the one before."""
     lower = slot >> 1
     return 2 * (lower + (slot & 1)) + 1 if up == 1 else 2 * lower - 1
 
 
 @kernel
 def _turns(slot, number):
-    """Return by how many turns, -1, 0 or 1, a slot lies outside a periodic axis of ``number`` cells."""
+    """Return by how many lengths of the box, -1, 0 or 1, a slot lies outside a periodic axis of ``number`` cells."""
     return (1 if slot >= 2 * number else 0) - (1 if slot < 0 else 0)
 
 
@@ -99,7 +106,7 @@ def _brought_back(i, at, sx, sy, sz, gas):
 
 @kernel
 def _image_shift(q, length, inverse):
-    """Return the shift by which a coordinate relative to the centre of a cell becomes that of the nearest image."""
+    """Return what to subtract from a coordinate relative to the centre of a cell to get that of the nearest image."""
     return length * np.rint(q * inverse)
 
 
@@ -149,10 +156,10 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
     # then the exact test of the members that it names, each at its image nearest to the centre of the cell
     while named != 0:
         j = name_at(start, lowest_bit(named), cells, modes)
-        named &= named - 1
+        named &= named - 1  # removes the lowest bit
         other = motion_at(j, t, gas, modes)
         rx, ry, rz = at.x - other.x, at.y - other.y, at.z - other.z
-        if modes.periodic:
+        if modes.periodic:  # x - rx is the coordinate of the other one
             rx += _image_shift(x - rx, box.length_x, box.inverse_x)
             ry += _image_shift(y - ry, box.length_y, box.inverse_y)
             if not (modes.gravity or modes.piston):
@@ -198,7 +205,7 @@ def search(i, t, at, boundary, gas, modes):
     sy = _narrowed(at.y, before[1], size, 1, cells)
     sz = _narrowed(at.z, before[2], size, 2, cells)
     # at a boundary it enters cells of one layer: their numbers along that axis are all even or all odd, so a fixed set
-    # of bits names them (`rows` tells which bit is which cell)
+    # of bits names them (x is odd in the cells of bits 4 to 7, y in those of 2, 3, 6, 7, z in those of 1, 3, 5, 7)
     crossing = boundary < CONTACT
     entered = 0xFF
     if crossing:
@@ -218,6 +225,7 @@ def search(i, t, at, boundary, gas, modes):
         at, sx, sy, sz = _brought_back(i, at, sx, sy, sz, gas)
     slots = sx, sy, sz
     new = members_of(slots)
+    # cells that it leaves: also those whose bit now stands for the entered cell, which lies two cells further on
     gone = members_of(before) & ((entered if crossing else 0) | ~new)
     while gone != 0:
         bit = lowest_bit(gone)

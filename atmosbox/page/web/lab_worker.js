@@ -331,7 +331,7 @@ class Box {
     const [here, written] = [key(this.plan.start), key(this.starts.values)];
     const kept = this.starts.has(here) && !this.told.lesson.presets.includes(this.start);
     await this.change(this.starts.has(here) ? here : written);
-    if (!kept) say({ type: "note", level: "info", text: "This page has no box with these settings together: all others are as the page was written." });
+    if (!kept) say({ type: "note", level: "info", text: "This page has no box with all these settings: the other settings are back at their first values." });
   }
 
   // Begin a preset; the first of the list is the box for which the page was written.

@@ -58,7 +58,7 @@ def convection_headlines(
     at_frames = np.interp(-np.log(outside), -np.log(route), dense)
     seen = [energies(at_frames * (1.0 + each) - around(outside), ascent.base) for each in drawn]
     rows = (
-        ("cape", "J kg-1", "J kg-1", "CAPE, the cloud carries its water"),
+        ("cape", "J kg-1", "J kg-1", "CAPE of the parcel, with its water"),
         ("cin", "J kg-1", "J kg-1", "CIN of the parcel"),
         ("lfc", "Pa", "hPa", "level of free convection"),
         ("el", "Pa", "hPa", "equilibrium level"),

@@ -40,22 +40,22 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
     liquid, vapour = "cloud_liquid_water_mixing_ratio", "humidity_mixing_ratio"
     water = (
         Line(liquid, "parcel_pressure", "liquid"),
-        Line(f"{liquid}_theory", "parcel_pressure", "liquid, theory", "theory"),
+        Line(f"{liquid}_theory", "parcel_pressure", "theory", "theory"),
         Line(vapour, "parcel_pressure", "vapour"),
-        Line(f"{vapour}_theory", "parcel_pressure", "vapour, theory", "theory"),
+        Line(f"{vapour}_theory", "parcel_pressure", "theory", "theory"),
     )
-    shown = [f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]]
-    more: dict[str, Any] = {"start": start}
+    shown = [f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1:2]]
+    both: dict[str, Any] = {"pressure": True}
     if cloud:
         # so that the kink is seen, a fifth of the axis lies below it
-        more["y_limits"] = low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)
-        more["guides"] = (("y", base, "cloud base, theory"),)
+        both["y_limits"] = low, max(ascent.top_pressure / 100.0, low * (base / low) ** 5)
         shown.insert(0, "cloud_base")
-    title = "In its cloud it cools more slowly" if cloud else "Too dry for a cloud"
+    title = "In its cloud it cools less" if cloud else "Too dry for a cloud"
+    marked = [(("y", base, words),) if cloud else () for words in ("cloud base", "")]
     return (
         replace(atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"), start=start),
-        over_height(title, cools, "temperature", "degC", *shown, pressure=True, **more),
-        over_height("Vapour becomes liquid", water, "mixing ratio", "g kg-1", pressure=True),
+        over_height(title, cools, "temperature", "degC", *shown, start=start, guides=marked[0], **both),
+        over_height("Vapour becomes liquid", water, "mixing ratio", "g kg-1", guides=marked[1], **both),
     )
 
 
