@@ -72,6 +72,9 @@ def test_rolls_grow_where_the_temperature_falls_faster_than_the_adiabat_and_the_
     assert found[0.6][:5] == pytest.approx([0.0017, 0.0044, 0.0048, 0.0034, 0.0007], abs=6e-5)
     assert abs(found[0.75].max()) < 5e-4
     assert found[0.9].max() < 0.0
+    # decay, too, is that of rolls, and not of solutions that depend on the order of the polynomials
+    finer = theory.growth_rates(SPHERES, 80.0, 1.9, 0.1, weights[0.9], 1.0, waves, order=60)
+    assert finer == pytest.approx(found[0.9], rel=1e-3)
 
 
 def test_the_growth_of_a_fluctuation_that_noise_drives_is_found_within_its_error():

@@ -259,8 +259,8 @@ cell_pressure | Pa | time distance height: mean | pressure of the air in a cell,
 equation of state
 horizontal_wind | m s-1 | time distance height: mean | wind from left to right
 upward_wind | m s-1 | time distance height: mean standard=upward_air_velocity | upward wind
-wind_speed | m s-1 | time: mean | root of the difference of two mean squares, of the wind and of thermal noise; \
-below zero where, by chance, that of the noise is larger
+wind_speed | m s-1 | time: mean | speed of the wind without thermal noise: root of the mean square of the \
+measured wind minus that of noise; where, by chance, this difference is negative, minus the root of its size
 roll_speed | m s-1 | time: mean | root of the sum of the squared amplitudes of all rolls, without noise
 core_lapse_rate | K m-1 | time: mean difference | lapse rate between three and seven tenths of the height
 roll_amplitude | m s-1 | time mode: mean | amplitude of the upward wind of rolls

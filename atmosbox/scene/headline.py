@@ -1,4 +1,4 @@
-"""The few main results of a run, each beside the answer of the textbook."""
+"""The few main results of a run, beside the answer of theory where there is one."""
 
 from __future__ import annotations
 

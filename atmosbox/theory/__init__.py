@@ -1,4 +1,4 @@
-"""Theory: what the textbook says, to compare with what the box measures.
+"""Theory: what is expected, to compare with what the box measures.
 
 Every function is a closed form, or the solution of one equation, with its source. None of them is used to move a
 molecule. Where an argument is called ``kT`` or ``diameter`` any consistent set of units will do, reduced or SI; where

@@ -293,6 +293,9 @@ def _chebyshev(order: int) -> tuple[FloatArray, FloatArray]:
     return matrix - np.diag(matrix.sum(axis=1)), x
 
 
+_WARM = 0.1  # least change of temperature in a wave of air, in units of its change of density, as shares of both
+
+
 def growth_rates(
     gas: Gas,
     height: float,
@@ -309,7 +312,8 @@ def growth_rates(
     """Return how fast waves of convection grow in a thin gas at rest [1/time]; negative where they decay.
 
     Density, wind and temperature are perturbed by :math:`e^{st + ikx}` times functions of the height, at Chebyshev
-    points; of all eigenvalues s, the growth rates, the one with the largest real part counts.
+    points; of all eigenvalues s, the growth rates, the one with the largest real part counts. Solutions of almost
+    constant temperature are left out: they are no waves of air, but follow from the finite order of the polynomials.
 
     Parameters
     ----------
@@ -338,7 +342,7 @@ def growth_rates(
     """
     if gas.planar:
         raise ValueError("the growth of convection is known for a thin gas of spheres")
-    from scipy.linalg import eigvals  # loads slowly
+    from scipy.linalg import eig  # loads slowly
 
     derivative, x = _chebyshev(order)
     z = 0.5 * (x + 1.0) * height
@@ -372,7 +376,10 @@ def growth_rates(
                 left[row] = right[row] = 0.0
                 left[row, field * size : (field + 1) * size] = -inward * length * path[at] * D[at]
                 left[row, row] += 1.0
-        values = eigvals(left, right)
-        values = values[np.isfinite(values) & (np.abs(values) < 1e3 / path.min())]
+        values, shapes = eig(left, right)
+        denser, warmer = (
+            np.abs(each / of[:, None]).max(axis=0) for each, of in ((shapes[:size], n), (shapes[-size:], kT))
+        )
+        values = values[np.isfinite(values) & (np.abs(values) < 1e3 / path.min()) & (warmer > _WARM * denser)]
         found.append(float(values.real.max()))
     return np.array(found)

@@ -59,8 +59,8 @@ def saturation(found: Findings) -> None:
         if stated.standard_error > FINE:
             found.failures.append(f"{where} is known to {100.0 * stated.standard_error:.2f} % only")
     t, e, error, share, share_error = np.array(rows).T
-    mean = float(np.average(share, weights=share_error**-2))
-    found.number("mean", f"{100.0 * mean:.1f} ± {100.0 * np.sum(share_error**-2) ** -0.5:.1f} %")
+    chance = float(np.sqrt(np.sum(share_error**2))) / len(rows)
+    found.number("mean", f"{100.0 * share.mean():.1f} ± {100.0 * chance:.1f} %")
     iapws(found)
     draw_saturation(found, t, e, error, share, share_error)
 
