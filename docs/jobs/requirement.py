@@ -239,9 +239,9 @@ def vapour() -> list[list[str]]:
     return [
         ["forces between molecules of vapour", f"saturated vapour at {t - 273.15:.0f} °C has a pressure "
          f"{rounded(-100.0 * nonideal)} % below that of an ideal gas"],
-        ["attraction between molecules of air and vapour, and (a sixth) the pressure of the air on the liquid",
+        ["attraction between molecules of air and vapour, and the pressure of the air on the liquid",
          f"saturated air has {rounded(100.0 * enhancement)} % more vapour at {settings.si.pressure / 100.0:.0f} hPa "
-         "(Buck 1981)"],
+         "(Buck 1981), a sixth of it because of the pressure"],
         ["molecules that bounce off the liquid", "measured sticking probabilities lie between about 0.01 "
          "and 1, here it is 1; both rates change alike, and saturation does not"],
     ]  # fmt: skip
