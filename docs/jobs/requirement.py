@@ -218,10 +218,10 @@ def moist() -> list[list[str]]:
          "than the reversible one; a run with `rain=on` ends nearly as cold"],
         ["the weight of the droplets", f"lowers the buoyancy as if the parcel were {rounded(end * liquid)} K "
          "colder; the temperature stays the same"],
-        ["supersaturation in an updraft", f"in a real cloud {rounded(100.0 * supersaturation)} % at {climbing:.0f} m/s with "
-         f"{CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm radius in a cubic centimetre; here vapour "
-         f"condenses a little late, so its latent heat is missing: the parcel is up to {rounded(float(lag.max()))} K "
-         "too cold"],
+        ["supersaturation in an updraft", f"in a real cloud {rounded(100.0 * supersaturation)} % at "
+         f"{climbing:.0f} m/s with {CONCENTRATION / 1e6:.0f} droplets of {DROPLET * 1e6:.0f} µm radius in a "
+         "cubic centimetre; here vapour condenses a little late, so its latent heat is missing: the parcel is up to "
+         f"{rounded(float(lag.max()))} K too cold"],
         ["an ascent of an hour; here it takes nanoseconds",
          f"the parcel is up to {rounded(float(fast.max()))} K too warm"],
         ["clusters of few molecules", f"some molecules condense too early: at the cloud base the parcel is "
