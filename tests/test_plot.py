@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -176,6 +177,12 @@ def test_curves_differ_by_more_than_their_colour(drawings):
             if len(line.get_xdata()) > 2 and (line.get_linestyle(), line.get_marker()) != ("None", "None")
         ]
         assert len(set(looks)) == len(looks)
+
+
+def test_a_slide_has_the_first_graph_of_each_of_two_columns():
+    panels = [replace(TEMPERATURE, title=title) for title in ("one", "below it", "beside it")]
+    run = small([280.0, 290.0]).assign_attrs(atmosbox_panels=to_json(panels))
+    assert [axes.get_title(loc="left") for axes in plot.figure(run, "slides").axes] == ["one", "beside it"]
 
 
 @pytest.mark.parametrize("scale", ["linear", "log"])

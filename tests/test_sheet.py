@@ -298,6 +298,7 @@ def test_a_sheet_for_pages_names_pages_and_graphs_and_nothing_that_is_typed(scen
     assert ("until it stops" in made.text) == scene.startswith(("lifting", "mountains"))
     rows = re.findall(r"^\| ([^|]*) \| ([^|]*) \| ([A-D]) \|", made.text, re.MULTILINE)
     shown = {run.letter: run.prepared.module.panels(run.prepared.settings) for run in made.runs}
+    assert rows
     assert {graph for graph, _, _ in rows if graph} <= {panel.title for panel in shown["A"]}
     curve = ""
     for _, told, letter in rows:  # no run has a line of a curve that its page does not show

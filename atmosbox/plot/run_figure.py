@@ -31,7 +31,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     dataset : xarray.Dataset
         The run as atmosbox returns or saves it, in SI units. Its attribute ``atmosbox_panels`` lists the panels.
     theme : {"notes", "slides"}
-        A figure for a page, or one for a screen of 16:9 with large type.
+        A figure for a page; or one for a screen of 16:9 with large type, which has the first graph of each of two
+        columns.
 
     Raises
     ------

@@ -293,7 +293,7 @@ def _chebyshev(order: int) -> tuple[FloatArray, FloatArray]:
     return matrix - np.diag(matrix.sum(axis=1)), x
 
 
-_WARM = 0.1  # least change of temperature in a wave of air, in units of its change of density, as shares of both
+_WARM = 0.1  # least relative change of temperature in a wave of air, divided by that of density
 
 
 def growth_rates(

@@ -688,6 +688,9 @@ def test_at_the_end_of_an_ascent_gauges_task_and_picture_show_its_last_frame(lab
     assert near(" ".join(read[1][1:]), pascal / 100.0, "hPa", 0)
     said = page.locator(".verdict").inner_text().removeprefix("Now: ").removesuffix(".")
     assert near(said, metre / 1000.0, "km", 2) if scene == "mountains" else near(said, kelvin - 273.15, "°C", 1)
+    for key in page.locator(".key").all():  # curves of one label look alike
+        labels = key.locator(":scope > span").all_inner_texts()
+        assert len(set(labels)) == len(labels)
     texts = _drawn_anew(page)
     for value, unit, decimals in ((kelvin - 273.15, "°C", 0), (pascal / 100.0, "hPa", 0), (metre / 1000.0, "km", 1)):
         assert any(near(text, value, unit, decimals) for text in texts), (value, texts)

@@ -59,13 +59,13 @@ const along = (values, count) => (values.length === 1 && count > 1 ? new Array(c
 // The curves of a panel for which the run has values.
 export function curvesOf(panel, numbers) {
   if (panel.kind === "atmosphere") return wayOf(panel, numbers);
-  const seen = {};
+  const labels = {}; // of each role: curves of one label look alike
   const found = [];
   for (const line of panel.lines) {
-    const index = seen[line.role] ?? 0;
-    seen[line.role] = index + 1;
+    const known = (labels[line.role] ??= []);
+    if (!known.includes(line.label)) known.push(line.label);
     const curve = curveOf(panel, line, numbers);
-    if (curve) found.push({ ...curve, index });
+    if (curve) found.push({ ...curve, index: known.indexOf(line.label) });
   }
   return found;
 }
